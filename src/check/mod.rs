@@ -1,0 +1,1 @@
+//! Judges a glTF file as its users' viewers would see it.

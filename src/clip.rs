@@ -1,0 +1,1 @@
+//! Checked keyframes, shared by all stages.

@@ -1,0 +1,26 @@
+//! Rotations over time in, glTF animations out.
+//!
+//! The modules stand in the order in which data flows through them:
+//! [`read`] turns the text of a `.dat` file into a [`clip`], [`curve`] runs a
+//! smooth motion through its keys, [`sample`] evaluates that motion at the
+//! times a viewer will play, [`write`] makes a glTF file of the samples,
+//! [`asset`] loads any glTF file back, [`check`] judges it and [`render`]
+//! draws it.
+//!
+//! # Conventions
+//!
+//! * Quaternions are Hamilton's; `a * b` applies `b` first. Files hold
+//!   w x y z, glTF and glam x y z w; the two meet in one place only.
+//! * Each box's rotation is local to the box above it.
+//! * Times are seconds, angles radians unless a name says degrees.
+//! * `t` is seconds, `u` runs from 0 to 1 within a segment, `h` is an interval.
+
+pub mod asset;
+pub mod check;
+pub mod clip;
+pub mod curve;
+pub mod read;
+#[cfg(feature = "render")]
+pub mod render;
+pub mod sample;
+pub mod write;

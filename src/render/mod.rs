@@ -1,0 +1,1 @@
+//! Draws a glTF file at a time of one of its clips.

@@ -1,0 +1,1 @@
+//! Motions to samples at the times a viewer plays.
