@@ -1,0 +1,13 @@
+//! Quaternions over any scalar, and the scalars: `f64`, jets, intervals.
+
+mod interval;
+mod jet;
+mod quat;
+mod scalar;
+mod vec3;
+
+pub use interval::Interval;
+pub use jet::Jet;
+pub use quat::Quat;
+pub use scalar::Scalar;
+pub use vec3::Vec3;

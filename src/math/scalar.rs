@@ -1,0 +1,75 @@
+//! What a number must offer so that the formulas of [`crate::curve`] run on it.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A real number, or something that computes like one: plain (`f64`), with its
+/// derivatives ([`super::Jet`]), or known only to lie in a range
+/// ([`super::Interval`]).
+///
+/// The three functions are those by which rotations differ from vectors. Each is
+/// analytic where the curves need it, so that a formula written with them has no
+/// branches and can be differentiated or bounded as it stands.
+pub trait Scalar:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+    /// The scalar that stands for the number `x`.
+    fn constant(x: f64) -> Self;
+
+    /// Sine and cosine.
+    fn sin_cos(self) -> (Self, Self);
+
+    /// cos √x and sin √x / √x, for x ≥ 0.
+    fn cos_sinc_of_square(self) -> (Self, Self);
+
+    /// φ / sin φ for an angle φ in [0, π) that is given by its cosine (`self`) and
+    /// the square of its sine, of which the accurate one may be used.
+    fn angle_over_sine(self, sine_squared: Self) -> Self;
+}
+
+impl Scalar for f64 {
+    fn constant(x: f64) -> Self {
+        x
+    }
+
+    fn sin_cos(self) -> (Self, Self) {
+        f64::sin_cos(self)
+    }
+
+    fn cos_sinc_of_square(self) -> (Self, Self) {
+        let x = self.sqrt();
+        let (sin, cos) = x.sin_cos();
+        // Below 1e-8 the quotient's limit is exact to the last bit.
+        (cos, if x < 1e-8 { 1.0 } else { sin / x })
+    }
+
+    fn angle_over_sine(self, sine_squared: Self) -> Self {
+        let sine = sine_squared.sqrt();
+        if sine == 0.0 { 1.0 } else { sine.atan2(self) / sine }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cos_sinc_is_continuous_where_the_branch_is() {
+        for x in [0.0, 1e-300, 1e-18, 0.99e-16, 1.01e-16, 1e-10, 1.0, 9.0] {
+            let (cos, sinc) = f64::cos_sinc_of_square(x);
+            assert!((cos - x.sqrt().cos()).abs() < 1e-15);
+            let series = 1.0 - x / 6.0 + x * x / 120.0;
+            if x < 1e-4 {
+                assert!((sinc - series).abs() < 1e-15, "{x}");
+            }
+        }
+    }
+
+    #[test]
+    fn angle_over_sine_inverts_the_sine() {
+        for angle in [1e-200, 1e-12, 1e-6, 0.1, 1.5, 3.0, 3.1415926] {
+            let (sin, cos) = f64::sin_cos(angle);
+            let ratio = cos.angle_over_sine(sin * sin);
+            assert!((ratio * sin - angle).abs() <= 4e-16 * angle.max(1e-3), "{angle}");
+        }
+    }
+}
