@@ -1,1 +1,28 @@
 //! Smooth motions through keys.
+//!
+//! A [`Scheme`] says which curve runs between two keys, given the neighbours on
+//! either side; [`Ends`] says what stands in for the neighbours the first and last
+//! segment lack; a [`Motion`] is one track's keys with both.
+//!
+//! A further scheme is a file here, a line in [`scheme`] and a page in docs/math.
+
+mod arc;
+mod bessel;
+mod bessel_overhauser;
+mod catmull_rom;
+mod cumulative;
+mod ends;
+mod motion;
+mod scheme;
+mod slerp;
+mod squad;
+mod warnings;
+
+pub use arc::Arc;
+pub use ends::{Ends, NotClosed, ramp_start};
+pub use motion::{Motion, Piece};
+pub use scheme::{Scheme, Smoothness};
+pub use warnings::warnings;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,83 @@
+//! The cubic Bézier of rotations in cumulative form, which carries several schemes.
+//!
+//! c₀ exp(ω₁ B̃₁(u)) exp(ω₂ B̃₂(u)) exp(ω₃ B̃₃(u)) with ωᵢ = log(cᵢ₋₁⁻¹ cᵢ) and
+//! B̃₁ = 1 − (1−u)³, B̃₂ = 3u² − 2u³, B̃₃ = u³.
+//! Source: Kim, Kim and Shin, SIGGRAPH 1995; docs/math/cumulative-bezier.md.
+
+use super::Arc;
+use super::arc::direction;
+use super::scheme::{End, Neighbour, Span};
+use crate::math::{Quat, Scalar, Vec3};
+
+/// A cumulative cubic: its first control rotation and its three steps.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CumulativeCubic {
+    start: Quat,
+    /// Length and unit axis of each ωᵢ.
+    steps: [(f64, Vec3); 3],
+}
+
+impl CumulativeCubic {
+    /// The cubic that starts at `start` and makes the steps ω₁, ω₂, ω₃, logarithms.
+    pub(super) fn new(start: Quat, steps: [Vec3; 3]) -> CumulativeCubic {
+        CumulativeCubic { start, steps: steps.map(direction) }
+    }
+
+    /// The cubic from `start` to `end` with the first and last step given.
+    ///
+    /// The steps are taken as they are, never as the logarithm of their exponential: one
+    /// longer than a turn keeps its speed. The middle one brings the curve to `end`.
+    fn between(start: Quat, end: Quat, first: Vec3, last: Vec3) -> CumulativeCubic {
+        let middle = Quat::exp(-first) * start.conjugate() * end * Quat::exp(-last);
+        CumulativeCubic::new(start, [first, middle.log(), last])
+    }
+}
+
+impl Arc for CumulativeCubic {
+    fn at<S: Scalar>(&self, u: S) -> Quat<S> {
+        let k = S::constant;
+        let v = k(1.0) - u;
+        let (uu, vvv) = (u * u, v * v * v);
+        let basis = [k(1.0) - vvv, uu * (k(3.0) - k(2.0) * u), uu * u];
+        let step = |i: usize| {
+            let (length, axis) = self.steps[i];
+            let (sin, cos) = (basis[i] * k(length)).sin_cos();
+            Quat { w: cos, v: Vec3::constant(axis) * sin }
+        };
+        Quat::constant(self.start) * step(0) * step(1) * step(2)
+    }
+}
+
+/// A key with both its neighbours.
+pub(super) struct Corner {
+    pub(super) before: Neighbour,
+    pub(super) key: Quat,
+    pub(super) after: Neighbour,
+}
+
+/// The cubic of a span whose outer control rotations follow from the key and its
+/// neighbours: `handle(corner, h)` is the step from a key to the next control rotation
+/// in a segment of h seconds, which by symmetry is also the step that leads to a key.
+pub(super) fn from_handles(span: &Span, handle: impl Fn(&Corner, f64) -> Vec3) -> CumulativeCubic {
+    let Span { start, end, h, .. } = *span;
+    let first =
+        span.before.map(|before| handle(&Corner { before, key: start, after: Neighbour { key: end, h } }, h));
+    let last =
+        span.after.map(|after| handle(&Corner { before: Neighbour { key: start, h }, key: end, after }, h));
+    let chord = start.conjugate() * end;
+    match (first, last, span.end_rule) {
+        (Some(first), Some(last), _) => CumulativeCubic::between(start, end, first, last),
+        (None, None, _) => CumulativeCubic::new(start, [chord.log() * (1.0 / 3.0); 3]),
+        (None, Some(last), End::Rest) => CumulativeCubic::between(start, end, Vec3::ZERO, last),
+        (Some(first), None, End::Rest) => CumulativeCubic::between(start, end, first, Vec3::ZERO),
+        // The missing control rotation halves the way to the other inner one.
+        (None, Some(last), End::Natural) => {
+            let half = (chord * Quat::exp(-last)).log() * 0.5;
+            CumulativeCubic::new(start, [half, half, last])
+        }
+        (Some(first), None, End::Natural) => {
+            let half = (Quat::exp(-first) * chord).log() * 0.5;
+            CumulativeCubic::new(start, [first, half, half])
+        }
+    }
+}

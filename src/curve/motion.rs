@@ -1,0 +1,164 @@
+//! One track's keys as a function of time.
+
+use super::arc::GreatArc;
+use super::scheme::{End, Neighbour, Segment, Span};
+use super::{Arc, Ends, Scheme, ramp_start};
+use crate::math::{Quat, Scalar};
+
+/// The motion of one box: its keys, the scheme between them, and the ends.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion<'a> {
+    times: &'a [f64],
+    keys: &'a [Quat],
+    /// The last key, which closed ends make equal to the first.
+    last: Quat,
+    scheme: Scheme,
+    ends: Ends,
+}
+
+/// A stretch of time on which a motion is smooth.
+#[derive(Clone, Copy, Debug)]
+pub struct Piece {
+    /// When it begins, seconds.
+    pub start: f64,
+    /// When it ends, seconds.
+    pub end: f64,
+    shape: Shape,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Shape {
+    Rest(Quat),
+    Ramp(GreatArc),
+    Segment(Segment),
+}
+
+impl Piece {
+    /// The place of a time within the piece: 0 at its start, 1 at its end. Times outside
+    /// are clamped.
+    pub fn parameter(&self, t: f64) -> f64 {
+        ((t - self.start) / (self.end - self.start)).clamp(0.0, 1.0)
+    }
+
+    /// The piece's length, seconds.
+    pub fn duration(&self) -> f64 {
+        self.end - self.start
+    }
+}
+
+impl Arc for Piece {
+    fn at<S: Scalar>(&self, u: S) -> Quat<S> {
+        match &self.shape {
+            Shape::Rest(q) => Quat::constant(*q),
+            Shape::Ramp(arc) => arc.at(u),
+            Shape::Segment(segment) => segment.at(u),
+        }
+    }
+}
+
+impl<'a> Motion<'a> {
+    /// The motion through `keys` at `times`, as a [`crate::clip::Clip`] holds them.
+    pub fn new(times: &'a [f64], keys: &'a [Quat], scheme: Scheme, ends: Ends) -> Motion<'a> {
+        // With two keys every scheme is slerp; slerp has no use for neighbours.
+        let scheme = if keys.len() == 2 { Scheme::Slerp } else { scheme };
+        let ends = if scheme == Scheme::Slerp { Ends::Natural } else { ends };
+        let last = keys[keys.len() - 1];
+        let last = if ends == Ends::Closed { keys[0].aligned_to(last) } else { last };
+        Motion { times, keys, last, scheme, ends }
+    }
+
+    /// Times of the keys, seconds.
+    pub fn times(&self) -> &'a [f64] {
+        self.times
+    }
+
+    /// Where the ramp of a jump begins, if this motion has one.
+    pub fn ramp(&self) -> Option<f64> {
+        (self.ends == Ends::Hold).then(|| ramp_start(self.times[0], self.times[1]))
+    }
+
+    /// The rotation at a time; before the first and after the last key that key's.
+    pub fn at(&self, t: f64) -> Quat {
+        let piece = self.piece_at(t);
+        piece.at(piece.parameter(t))
+    }
+
+    /// The piece that holds a time: of two that meet there, the later one.
+    pub fn piece_at(&self, t: f64) -> Piece {
+        let last = self.times.len() - 2;
+        let segment = self.times.partition_point(|&key| key <= t).saturating_sub(1).min(last);
+        self.piece(segment, t)
+    }
+
+    /// The piece of segment `i`, from key i to key i + 1, that holds the time t.
+    pub fn piece(&self, i: usize, t: f64) -> Piece {
+        let (start, end) = (self.times[i], self.times[i + 1]);
+        if self.ends != Ends::Hold {
+            return Piece { start, end, shape: Shape::Segment(self.segment(i)) };
+        }
+        let rest = Shape::Rest(self.key(i));
+        match self.ramp() {
+            Some(ramp) if i == 0 && t < ramp => Piece { start, end: ramp, shape: rest },
+            Some(ramp) if i == 0 => {
+                let arc = GreatArc::new(self.key(0), self.key(1));
+                Piece { start: ramp, end, shape: Shape::Ramp(arc) }
+            }
+            _ if i + 2 == self.keys.len() => Piece { start, end, shape: rest },
+            _ => Piece { start, end, shape: Shape::Segment(self.segment(i)) },
+        }
+    }
+
+    /// Key i as the motion passes it.
+    fn key(&self, i: usize) -> Quat {
+        if i + 1 == self.keys.len() { self.last } else { self.keys[i] }
+    }
+
+    fn segment(&self, i: usize) -> Segment {
+        self.scheme.segment(&Span {
+            before: self.before(i),
+            start: self.key(i),
+            end: self.key(i + 1),
+            h: self.interval(i),
+            after: self.after(i + 1),
+            end_rule: if self.ends == Ends::Clamped { End::Rest } else { End::Natural },
+        })
+    }
+
+    /// Time from key i to key i + 1.
+    fn interval(&self, i: usize) -> f64 {
+        self.times[i + 1] - self.times[i]
+    }
+
+    /// The key before key i.
+    fn before(&self, i: usize) -> Option<Neighbour> {
+        if i > 0 {
+            return Some(Neighbour { key: self.key(i - 1), h: self.interval(i - 1) });
+        }
+        let last = self.keys.len() - 1;
+        match self.ends {
+            Ends::Repeat => Some(Neighbour { key: self.key(0), h: self.interval(0) }),
+            // The sign that makes the last key the first.
+            Ends::Closed => {
+                Some(Neighbour { key: self.with_seam_sign(self.key(last - 1)), h: self.interval(last - 1) })
+            }
+            Ends::Natural | Ends::Clamped | Ends::Hold => None,
+        }
+    }
+
+    /// The key after key i.
+    fn after(&self, i: usize) -> Option<Neighbour> {
+        let last = self.keys.len() - 1;
+        if i < last {
+            return Some(Neighbour { key: self.key(i + 1), h: self.interval(i) });
+        }
+        match self.ends {
+            Ends::Repeat => Some(Neighbour { key: self.last, h: self.interval(last - 1) }),
+            Ends::Closed => Some(Neighbour { key: self.with_seam_sign(self.key(1)), h: self.interval(0) }),
+            Ends::Natural | Ends::Clamped | Ends::Hold => None,
+        }
+    }
+
+    fn with_seam_sign(&self, q: Quat) -> Quat {
+        if self.key(0).dot(self.last) < 0.0 { -q } else { q }
+    }
+}

@@ -1,0 +1,111 @@
+//! The list of schemes, and what each of them is asked for.
+
+use super::{Arc, bessel, bessel_overhauser, catmull_rom, slerp, squad};
+use crate::math::{Quat, Scalar};
+
+/// Where a scheme's motion has no jumps in speed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Smoothness {
+    /// Not at the keys.
+    Corners,
+    /// At the keys too, where they are evenly spaced in time.
+    EvenKeys,
+    /// Everywhere.
+    Always,
+}
+
+/// A neighbouring key and the time to it, seconds.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Neighbour {
+    pub(super) key: Quat,
+    pub(super) h: f64,
+}
+
+/// What shapes the motion where a neighbour is missing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum End {
+    /// It starts and stops without acceleration.
+    Natural,
+    /// It starts and stops at rest.
+    Rest,
+}
+
+/// One segment with its surroundings: two keys h seconds apart, and their neighbours.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Span {
+    pub(super) before: Option<Neighbour>,
+    pub(super) start: Quat,
+    pub(super) end: Quat,
+    pub(super) h: f64,
+    pub(super) after: Option<Neighbour>,
+    pub(super) end_rule: End,
+}
+
+/// A scheme: how the curve between two keys follows from them and their neighbours.
+pub(super) trait Rule {
+    /// As the user names it.
+    const NAME: &'static str;
+    /// In a line, for the help text.
+    const SUMMARY: &'static str;
+    const SMOOTHNESS: Smoothness;
+    type Arc: Arc + Copy;
+    fn arc(span: &Span) -> Self::Arc;
+}
+
+macro_rules! schemes {
+    ($($name:ident = $rule:path,)*) => {
+        /// How rotations run from key to key.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[expect(missing_docs, reason = "each scheme's own file and page describe it")]
+        pub enum Scheme { $($name,)* }
+
+        /// The curve of one scheme between two keys.
+        #[derive(Clone, Copy, Debug)]
+        pub(super) enum Segment { $($name(<$rule as Rule>::Arc),)* }
+
+        impl Scheme {
+            /// Every scheme, in the order of the documentation.
+            pub const ALL: &'static [Scheme] = &[$(Scheme::$name,)*];
+
+            /// The name by which users choose it.
+            pub fn name(self) -> &'static str {
+                match self { $(Scheme::$name => <$rule as Rule>::NAME,)* }
+            }
+
+            /// What it is, in a line.
+            pub fn summary(self) -> &'static str {
+                match self { $(Scheme::$name => <$rule as Rule>::SUMMARY,)* }
+            }
+
+            /// Where its motion is smooth.
+            pub fn smoothness(self) -> Smoothness {
+                match self { $(Scheme::$name => <$rule as Rule>::SMOOTHNESS,)* }
+            }
+
+            pub(super) fn segment(self, span: &Span) -> Segment {
+                match self { $(Scheme::$name => Segment::$name(<$rule as Rule>::arc(span)),)* }
+            }
+        }
+
+        impl Arc for Segment {
+            fn at<S: Scalar>(&self, u: S) -> Quat<S> {
+                match self { $(Segment::$name(arc) => arc.at(u),)* }
+            }
+        }
+    };
+}
+
+schemes! {
+    Slerp = slerp::Slerp,
+    Squad = squad::Squad,
+    CatmullRom = catmull_rom::CatmullRom,
+    BesselOverhauser = bessel_overhauser::BesselOverhauser,
+    Bessel = bessel::Bessel,
+}
+
+impl Scheme {
+    /// The scheme of a name, if there is one.
+    pub fn from_name(name: &str) -> Option<Scheme> {
+        Scheme::ALL.iter().copied().find(|scheme| scheme.name() == name)
+    }
+}

@@ -1,0 +1,60 @@
+//! `squad`: a slerp between two slerps, one of keys and one of control rotations.
+
+use super::Arc;
+use super::arc::GreatArc;
+use super::scheme::{End, Neighbour, Rule, Smoothness, Span};
+use crate::math::{Quat, Scalar};
+
+/// Shoemake 1987; docs/math/squad.md.
+pub(super) struct Squad;
+
+/// slerp(slerp(q₁, q₂, u), slerp(a₁, a₂, u), 2u(1−u)).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SquadArc {
+    keys: GreatArc,
+    controls: GreatArc,
+}
+
+impl Rule for Squad {
+    const NAME: &'static str = "squad";
+    const SUMMARY: &'static str = "Shoemake's spline; smooth on even keys";
+    const SMOOTHNESS: Smoothness = Smoothness::EvenKeys;
+    type Arc = SquadArc;
+
+    fn arc(span: &Span) -> SquadArc {
+        let Span { start, end, .. } = *span;
+        let (a1, a2) = controls(span);
+        SquadArc { keys: GreatArc::new(start, end), controls: GreatArc::new(a1, a2) }
+    }
+}
+
+impl Arc for SquadArc {
+    fn at<S: Scalar>(&self, u: S) -> Quat<S> {
+        let key = self.keys.at(u);
+        let across = (key.conjugate() * self.controls.at(u)).smooth_log();
+        key * Quat::exp(across * (S::constant(2.0) * u * (S::constant(1.0) - u)))
+    }
+}
+
+/// The control rotations a₁ and a₂ of a span.
+fn controls(span: &Span) -> (Quat, Quat) {
+    let Span { start, end, .. } = *span;
+    let first = span.before.map(|before| control(before, start, end));
+    let last = span.after.map(|after| control(after, end, start));
+    let outer = |key: Quat, other: Quat, inner: Quat| match span.end_rule {
+        End::Rest => key * Quat::exp((key.conjugate() * other).log() * -0.5),
+        End::Natural => key * Quat::exp((other.conjugate() * inner).log() * 0.5),
+    };
+    match (first, last) {
+        (Some(a1), Some(a2)) => (a1, a2),
+        (None, Some(a2)) => (outer(start, end, a2), a2),
+        (Some(a1), None) => (a1, outer(end, start, a1)),
+        (None, None) => (start, end),
+    }
+}
+
+/// qᵢ exp(−(log(qᵢ⁻¹qᵢ₋₁) + log(qᵢ⁻¹qᵢ₊₁))/4); its two neighbours play the same part.
+fn control(neighbour: Neighbour, key: Quat, other: Quat) -> Quat {
+    let log = |q: Quat| (key.conjugate() * q).log();
+    key * Quat::exp((log(neighbour.key) + log(other)) * -0.25)
+}

@@ -1,0 +1,299 @@
+//! What every scheme must do, whatever its formula.
+
+use super::*;
+use crate::math::{Jet, Quat, Vec3};
+
+const UNEVEN: [f64; 7] = [0.0, 0.7, 1.0, 2.2, 2.9, 4.4, 5.0];
+const EVEN: [f64; 7] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
+
+/// Keys that turn about changing axes, by up to 140° at a time.
+fn keys() -> Vec<Quat> {
+    let steps = [[0.0, 0.0, 0.0], [0.4, -0.3, 0.2], [-0.2, 0.9, 0.5], [0.1, 0.1, -1.0], [0.7, 0.9, 0.1]];
+    let steps = steps.into_iter().chain([[-0.5, 0.2, 0.1], [0.3, -0.9, -0.6]]);
+    let turns = steps.scan(Quat::IDENTITY, |q, [x, y, z]| {
+        *q = *q * Quat::exp(Vec3::new(x, y, z));
+        Some(*q)
+    });
+    turns.collect()
+}
+
+/// Closed: the last key is the first, with the other sign.
+fn closed_keys() -> Vec<Quat> {
+    let mut keys = keys();
+    let last = keys.len() - 1;
+    keys[last] = keys[0].aligned_to(keys[last - 1]);
+    keys
+}
+
+fn distance(a: Quat, b: Quat) -> f64 {
+    let d = [a.w - b.w, a.v.x - b.v.x, a.v.y - b.v.y, a.v.z - b.v.z];
+    d.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+fn each(check: impl Fn(Scheme, Ends)) {
+    for &scheme in Scheme::ALL {
+        Ends::ALL.into_iter().for_each(|ends| check(scheme, ends));
+    }
+}
+
+/// Angular velocity (half of it) just before and just after key i.
+fn velocities(motion: &Motion, i: usize) -> (Vec3, Vec3) {
+    let times = motion.times();
+    let at = |piece: Piece, u: f64| piece.at(Jet::variable(u)).half_velocity() * (1.0 / piece.duration());
+    let before = motion.piece(i - 1, times[i].next_down());
+    (at(before, 1.0), at(motion.piece(i, times[i]), 0.0))
+}
+
+#[test]
+fn keys_are_passed_through() {
+    each(|scheme, ends| {
+        let keys = keys();
+        let motion = Motion::new(&UNEVEN, &keys, scheme, ends);
+        let reached = keys.iter().zip(UNEVEN).enumerate();
+        // Hold never reaches its last key; closed ends move it.
+        let open = scheme == Scheme::Slerp || !matches!(ends, Ends::Hold | Ends::Closed);
+        for (i, (key, t)) in reached.take(if open { 7 } else { 6 }) {
+            let error = motion.at(t).angle_to(*key);
+            assert!(error < 1e-14, "{} {}: key {i} missed by {error}", scheme.name(), ends.name());
+        }
+    });
+}
+
+#[test]
+fn motion_is_unit_and_continuous_with_its_sign() {
+    each(|scheme, ends| {
+        let keys = closed_keys();
+        let motion = Motion::new(&UNEVEN, &keys, scheme, ends);
+        let mut previous = motion.at(0.0);
+        for i in 0..=50_000 {
+            let q = motion.at(f64::from(i) * 1e-4);
+            assert!((q.norm() - 1.0).abs() < 1e-14);
+            // At most 12 rad/s but for the ramp, which turns by half a radian in 1 ms.
+            let reach = if ends == Ends::Hold { 0.1 } else { 1.2e-3 };
+            assert!(distance(q, previous) < reach, "{} {} {i}", scheme.name(), ends.name());
+            previous = q;
+        }
+    });
+}
+
+#[test]
+fn velocity_is_continuous_where_the_scheme_says_so() {
+    each(|scheme, ends| {
+        for times in [EVEN, UNEVEN] {
+            let keys = closed_keys();
+            let motion = Motion::new(&times, &keys, scheme, ends);
+            let smooth = match scheme.smoothness() {
+                Smoothness::Corners => false,
+                Smoothness::EvenKeys => times == EVEN,
+                Smoothness::Always => true,
+            };
+            let inner = if ends == Ends::Hold { 2..5 } else { 1..6 };
+            let jumps = inner.map(|i| {
+                let (before, after) = velocities(&motion, i);
+                (before - after).length()
+            });
+            let worst = jumps.fold(0.0, f64::max);
+            let name = scheme.name();
+            assert_eq!(worst < 1e-12, smooth, "{name} {}: jump {worst}", ends.name());
+        }
+    });
+}
+
+#[test]
+fn ends_do_what_they_say() {
+    let keys = closed_keys();
+    for &scheme in &Scheme::ALL[1..] {
+        let jet = |ends, i: usize, u| {
+            Motion::new(&EVEN, &keys, scheme, ends).piece(i, EVEN[i] + u).at(Jet::variable(u))
+        };
+        for (i, u) in [(0, 0.0), (5, 1.0)] {
+            assert!(jet(Ends::Clamped, i, u).half_velocity().length() < 1e-13, "{}", scheme.name());
+            let acceleration = jet(Ends::Natural, i, u).half_acceleration().length();
+            // squad's natural end is without acceleration on one axis only.
+            assert!(scheme == Scheme::Squad || acceleration < 1e-12, "{} {acceleration}", scheme.name());
+        }
+        let (start, end) = (jet(Ends::Closed, 0, 0.0), jet(Ends::Closed, 5, 1.0));
+        assert!((start.half_velocity() - end.half_velocity()).length() < 1e-13, "{}", scheme.name());
+        let held = Motion::new(&EVEN, &keys, scheme, Ends::Hold);
+        assert_eq!(held.at(0.998), keys[0]);
+        assert_eq!(held.at(6.0), keys[5]);
+        assert!(held.at(0.9995).angle_to(keys[0]) > 0.1);
+    }
+}
+
+#[test]
+fn signs_in_the_file_change_nothing() {
+    each(|scheme, ends| {
+        let keys = closed_keys();
+        let flipped: Vec<Quat> = keys.iter().map(|&q| -q).collect();
+        let (a, b) =
+            (Motion::new(&UNEVEN, &keys, scheme, ends), Motion::new(&UNEVEN, &flipped, scheme, ends));
+        for i in 0..=100 {
+            let t = 0.05 * f64::from(i);
+            assert_eq!(a.at(t), -b.at(t), "{} {}", scheme.name(), ends.name());
+        }
+    });
+}
+
+#[test]
+fn a_turn_of_the_whole_clip_turns_the_motion() {
+    each(|scheme, ends| {
+        let keys = closed_keys();
+        let turn = Quat::exp(Vec3::new(0.9, -1.1, 0.4));
+        let turned: Vec<Quat> = keys.iter().map(|&q| turn * q).collect();
+        let (a, b) = (Motion::new(&UNEVEN, &keys, scheme, ends), Motion::new(&UNEVEN, &turned, scheme, ends));
+        for i in 0..=100 {
+            let t = 0.05 * f64::from(i);
+            assert!(distance(turn * a.at(t), b.at(t)) < 1e-13, "{} {}", scheme.name(), ends.name());
+        }
+    });
+}
+
+#[test]
+fn slower_time_is_the_same_motion_slower() {
+    each(|scheme, ends| {
+        // A ramp keeps its millisecond.
+        if ends == Ends::Hold {
+            return;
+        }
+        let keys = closed_keys();
+        let slow = UNEVEN.map(|t| 1024.0 * t);
+        let (a, b) = (Motion::new(&UNEVEN, &keys, scheme, ends), Motion::new(&slow, &keys, scheme, ends));
+        for i in 0..=100 {
+            let t = 0.05 * f64::from(i);
+            assert!(distance(a.at(t), b.at(1024.0 * t)) < 1e-13, "{} {}", scheme.name(), ends.name());
+        }
+    });
+}
+
+#[test]
+fn even_keys_make_bessel_overhauser_catmull_rom() {
+    let keys = keys();
+    for ends in [Ends::Natural, Ends::Clamped, Ends::Repeat] {
+        let a = Motion::new(&EVEN, &keys, Scheme::CatmullRom, ends);
+        let b = Motion::new(&EVEN, &keys, Scheme::BesselOverhauser, ends);
+        for i in 0..=600 {
+            let t = 0.01 * f64::from(i);
+            assert!(distance(a.at(t), b.at(t)) < 1e-13);
+        }
+    }
+}
+
+#[test]
+fn two_keys_make_every_scheme_slerp() {
+    let keys = [Quat::IDENTITY, Quat::exp(Vec3::new(0.3, 0.9, -0.4))];
+    let slerp = Motion::new(&[0.0, 2.0], &keys, Scheme::Slerp, Ends::Natural);
+    each(|scheme, ends| {
+        let motion = Motion::new(&[0.0, 2.0], &keys, scheme, ends);
+        for i in 0..=20 {
+            let t = 0.1 * f64::from(i);
+            assert_eq!(motion.at(t), slerp.at(t));
+        }
+    });
+}
+
+/// On one axis rotations add like numbers, and each scheme becomes a scalar spline.
+#[test]
+fn on_one_axis_schemes_are_scalar_splines() {
+    // Small enough for no power of bessel-overhauser to exceed half a turn.
+    let angles = [0.0, 0.25, 0.65, 0.55, -0.1, 0.2, 0.45];
+    let axis = Vec3::new(2.0 / 7.0, -3.0 / 7.0, 6.0 / 7.0);
+    let keys = angles.map(|a| Quat::exp(axis * a));
+    for &scheme in Scheme::ALL {
+        let motion = Motion::new(&UNEVEN, &keys, scheme, Ends::Natural);
+        for i in 0..=500 {
+            let t = 0.01 * f64::from(i);
+            let expected = Quat::exp(axis * scalar_spline(scheme, &angles, t));
+            assert!(distance(motion.at(t), expected) < 1e-13, "{} at {t}", scheme.name());
+        }
+    }
+}
+
+/// Each scheme for numbers instead of rotations, in Hermite or Bernstein form.
+fn scalar_spline(scheme: Scheme, x: &[f64; 7], t: f64) -> f64 {
+    let i = (0..5).rev().find(|&i| UNEVEN[i] <= t).unwrap_or(0);
+    let i = if t >= UNEVEN[5] { 5 } else { i };
+    let h = |i: usize| UNEVEN[i + 1] - UNEVEN[i];
+    let u = (t - UNEVEN[i]) / h(i);
+    let lerp = |a: f64, b: f64, u: f64| a + (b - a) * u;
+    let handle = |i: usize, h_segment: f64| match scheme {
+        Scheme::CatmullRom => (x[i + 1] - x[i - 1]) / 6.0,
+        _ => {
+            let (v0, v1) = ((x[i] - x[i - 1]) / h(i - 1), (x[i + 1] - x[i]) / h(i));
+            (h(i) * v0 + h(i - 1) * v1) / (h(i - 1) + h(i)) * h_segment / 3.0
+        }
+    };
+    match scheme {
+        Scheme::Slerp => lerp(x[i], x[i + 1], u),
+        Scheme::Squad => {
+            let control = |i: usize| x[i] - (x[i - 1] + x[i + 1] - 2.0 * x[i]) / 4.0;
+            let a0 = if i > 0 { control(i) } else { x[0] + (control(1) - x[1]) / 2.0 };
+            let a1 = if i < 5 { control(i + 1) } else { x[6] + (control(5) - x[5]) / 2.0 };
+            lerp(lerp(x[i], x[i + 1], u), lerp(a0, a1, u), 2.0 * u * (1.0 - u))
+        }
+        _ => {
+            let (mut b, mut c) = (f64::NAN, f64::NAN);
+            if i > 0 {
+                b = x[i] + handle(i, h(i));
+            }
+            if i < 5 {
+                c = x[i + 1] - handle(i + 1, h(i));
+            }
+            if i == 0 {
+                b = (x[0] + c) / 2.0;
+            }
+            if i == 5 {
+                c = (b + x[6]) / 2.0;
+            }
+            let v = 1.0 - u;
+            v.powi(3) * x[i] + 3.0 * v * v * u * b + 3.0 * v * u * u * c + u.powi(3) * x[i + 1]
+        }
+    }
+}
+
+#[test]
+fn jets_are_the_derivatives() {
+    each(|scheme, ends| {
+        let keys = closed_keys();
+        let motion = Motion::new(&UNEVEN, &keys, scheme, ends);
+        for (i, u) in [(0, 0.3), (2, 0.5), (3, 0.001), (5, 0.77)] {
+            let piece = motion.piece(i, UNEVEN[i]);
+            let h = 1e-5;
+            let (before, jet, after) = (piece.at(u - h), piece.at(Jet::variable(u)), piece.at(u + h));
+            let numeric = (before.conjugate() * after).log() * (0.5 / h);
+            // Truncation h²·|q‴|/6 with third derivatives up to 1e3, rounding eps/h.
+            let gap = (jet.half_velocity() - numeric).length();
+            assert!(gap < 1e-7, "{} {} {i}: {gap}", scheme.name(), ends.name());
+            let velocity = |u: f64| piece.at(Jet::variable(u)).half_velocity();
+            let numeric = (velocity(u + h) - velocity(u - h)) * (0.5 / h);
+            let gap = (jet.half_acceleration() - numeric).length();
+            assert!(gap < 1e-6, "{} {} {i}: {gap}", scheme.name(), ends.name());
+        }
+    });
+}
+
+#[test]
+fn long_handles_keep_their_speed() {
+    // A second key soon after the first and a third long after: the tangent carries
+    // the curve through more than a turn, and C¹ must hold all the same.
+    let times = [0.0, 0.01, 3.0, 3.1];
+    let keys = [0.0, 0.8, 1.0, 1.5].map(|a| Quat::exp(Vec3::new(0.0, a, 0.1 * a)));
+    for scheme in [Scheme::Bessel, Scheme::BesselOverhauser] {
+        let motion = Motion::new(&times, &keys, scheme, Ends::Natural);
+        for i in 1..3 {
+            let (before, after) = velocities(&motion, i);
+            assert!((before - after).length() < 1e-12 * before.length().max(1.0));
+        }
+    }
+}
+
+#[test]
+fn opposite_neighbours_of_catmull_rom_use_two_logarithms() {
+    // q₀⁻¹q₂ = −1 up to rounding: a full turn in two steps about z.
+    let keys =
+        [0.0, 0.5, 1.0, 1.2].map(|turns: f64| Quat::exp(Vec3::new(0.0, 0.0, turns * std::f64::consts::PI)));
+    let motion = Motion::new(&EVEN[..4], &keys, Scheme::CatmullRom, Ends::Natural);
+    let (before, after) = velocities(&motion, 1);
+    assert!((before - Vec3::new(0.0, 0.0, std::f64::consts::FRAC_PI_2)).length() < 1e-9);
+    assert!((before - after).length() < 1e-12);
+}
