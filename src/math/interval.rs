@@ -44,7 +44,8 @@ impl Interval {
 
     /// Sine over the range: its ends, and ±1 where a crest or trough lies inside.
     fn sin(self) -> Interval {
-        if !(self.hi - self.lo < TAU) {
+        let width = self.hi - self.lo;
+        if width >= TAU || width.is_nan() {
             return Interval::new(-1.0, 1.0);
         }
         let (a, b) = (self.lo.sin(), self.hi.sin());
@@ -89,7 +90,7 @@ impl Neg for Interval {
 impl Mul for Interval {
     type Output = Self;
     fn mul(self, b: Self) -> Self {
-        if !(self.magnitude() < f64::INFINITY && b.magnitude() < f64::INFINITY) {
+        if !self.magnitude().is_finite() || !b.magnitude().is_finite() {
             return Interval::WHOLE; // 0 · ∞ is no number
         }
         let products = [self.lo * b.lo, self.lo * b.hi, self.hi * b.lo, self.hi * b.hi];
