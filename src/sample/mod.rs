@@ -1,1 +1,14 @@
 //! Motions to samples at the times a viewer plays.
+//!
+//! A [`Timeline`] says when; [`rotations`] evaluates every track there, in parallel
+//! chunks that reach the caller in order, and says how far a viewer's playback of the
+//! written numbers can be from the curve. Memory does not grow with the output.
+
+mod deviation;
+mod fps;
+mod rotations;
+mod timeline;
+
+pub use fps::{Fps, NotARate};
+pub use rotations::{Steps, TrackFacts, rotations};
+pub use timeline::{Timeline, TooFine};
