@@ -1,6 +1,6 @@
 //! `bessel-overhauser`: `bessel` by powers and products of quaternions.
 
-use super::cumulative::{Corner, CumulativeCubic, from_handles};
+use super::cumulative::{Corner, CumulativeCubic, from_handles, log_of_product};
 use super::scheme::{Rule, Smoothness, Span};
 use crate::math::{Quat, Vec3};
 
@@ -24,7 +24,7 @@ impl Rule for BesselOverhauser {
 /// wrap once the time unit is small enough.
 fn velocity(Corner { before, key, after }: &Corner) -> Vec3 {
     let (to, from) = powers(before.key, *key, after.key, before.h, after.h);
-    (Quat::exp(to) * Quat::exp(from)).log() * (1.0 / (before.h + after.h))
+    log_of_product(Quat::exp(to) * Quat::exp(from), || to + from) * (1.0 / (before.h + after.h))
 }
 
 /// The logarithms of the two powers.

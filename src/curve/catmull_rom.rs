@@ -1,15 +1,12 @@
 //! `catmull-rom`: at each key the curve runs parallel to the chord of its neighbours.
 
-use super::cumulative::{Corner, CumulativeCubic, from_handles};
+use super::cumulative::{Corner, CumulativeCubic, from_handles, log_of_product};
 use super::scheme::{Rule, Smoothness, Span};
-use crate::math::{Quat, Vec3};
+use crate::math::Vec3;
 
 /// Catmull and Rom 1974, for rotations in the form of Kim, Kim and Shin 1995;
 /// docs/math/catmull-rom.md.
 pub(super) struct CatmullRom;
-
-/// How near −1 a chord's logarithm has no axis worth using.
-const NO_AXIS: f64 = 1e-6;
 
 impl Rule for CatmullRom {
     const NAME: &'static str = "catmull-rom";
@@ -24,11 +21,7 @@ impl Rule for CatmullRom {
 
 /// log q₀⁻¹q₂ for the neighbours q₀, q₂ of a key.
 fn chord(Corner { before, key, after }: &Corner) -> Vec3 {
-    let across = before.key.conjugate() * after.key;
-    let from_minus_one = Quat { w: across.w + 1.0, v: across.v };
-    if from_minus_one.norm() < NO_AXIS {
+    log_of_product(before.key.conjugate() * after.key, || {
         (before.key.conjugate() * *key).log() + (key.conjugate() * after.key).log()
-    } else {
-        across.log()
-    }
+    })
 }

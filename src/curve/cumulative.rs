@@ -55,6 +55,16 @@ pub(super) struct Corner {
     pub(super) after: Neighbour,
 }
 
+/// How near −1 a product has no axis worth using.
+const NO_AXIS: f64 = 1e-6;
+
+/// log of a product of two steps, and `sum`, of their logarithms, where the product lies
+/// so near −1 that any axis would do.
+pub(super) fn log_of_product(product: Quat, sum: impl FnOnce() -> Vec3) -> Vec3 {
+    let from_minus_one = Quat { w: product.w + 1.0, v: product.v };
+    if from_minus_one.norm() < NO_AXIS { sum() } else { product.log() }
+}
+
 /// The cubic of a span whose outer control rotations follow from the key and its
 /// neighbours: `handle(corner, h)` is the step from a key to the next control rotation
 /// in a segment of h seconds, which by symmetry is also the step that leads to a key.
