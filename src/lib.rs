@@ -18,6 +18,7 @@
 pub mod asset;
 pub mod check;
 pub mod clip;
+pub mod convert;
 pub mod curve;
 pub mod math;
 pub mod read;

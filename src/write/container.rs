@@ -29,17 +29,17 @@ pub struct Glb<W> {
     length: u64,
 }
 
+/// The size of a .glb with so much JSON and so much binary data.
+pub fn glb_size(json: usize, binary: u64) -> u64 {
+    HEADER + 2 * CHUNK_HEADER + json.next_multiple_of(4) as u64 + binary.next_multiple_of(4)
+}
+
 impl<W: Write + Seek> Glb<W> {
     /// Begins a file, `out` being at its start, with room for `json` bytes of JSON.
     pub fn new(mut out: W, json: usize) -> io::Result<Glb<W>> {
         let room = json.next_multiple_of(4) as u64;
         out.seek(SeekFrom::Start(HEADER + CHUNK_HEADER + room + CHUNK_HEADER))?;
         Ok(Glb { out, room, length: 0 })
-    }
-
-    /// The size of a file with so much JSON and so much binary data.
-    pub fn size(json: usize, binary: u64) -> u64 {
-        HEADER + 2 * CHUNK_HEADER + json.next_multiple_of(4) as u64 + binary.next_multiple_of(4)
     }
 
     /// Writes the JSON and the headers; returns the output, flushed.
@@ -126,7 +126,7 @@ mod tests {
         let mut glb = Glb::new(Cursor::new(Vec::new()), 21).unwrap();
         glb.append(b"abcde").unwrap();
         let bytes = glb.finish(b"{\"asset\":{}}").unwrap().into_inner();
-        assert_eq!(bytes.len() as u64, Glb::<Cursor<Vec<u8>>>::size(21, 5));
+        assert_eq!(bytes.len() as u64, glb_size(21, 5));
         let read = gltf::Glb::from_slice(&bytes).unwrap();
         assert_eq!(read.header.length as usize, bytes.len());
         assert_eq!(read.json.as_ref(), b"{\"asset\":{}}            ");

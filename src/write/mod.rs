@@ -10,7 +10,7 @@ mod free_body;
 mod mesh;
 mod scene;
 
-pub use container::{Bin, Buffer, Glb, LARGEST_GLB};
+pub use container::{Bin, Buffer, Glb, LARGEST_GLB, glb_size};
 pub use document::{Animation, Channel, Data, Property, document};
 pub use mesh::{Material, Mesh, Part};
 pub use scene::{Node, Scene};

@@ -1,0 +1,3 @@
+//! Whole-flow tests, a file a stage.
+
+mod reference;
