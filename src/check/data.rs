@@ -193,7 +193,10 @@ fn lengths(shared_asset: &Asset, ends: &BTreeMap<usize, f64>, report: &mut Repor
             report.add(
                 Code::ChannelLengths,
                 format!("/animations/{a}"),
-                format!("its channels end from {first} s to {last} s; the shorter ones hold their last value"),
+                format!(
+                    "its channels end from {} s to {} s; the shorter ones hold their last value",
+                    first as f32, last as f32
+                ),
             );
         }
     }
@@ -201,7 +204,10 @@ fn lengths(shared_asset: &Asset, ends: &BTreeMap<usize, f64>, report: &mut Repor
         report.add(
             Code::ClipLengths,
             "/animations",
-            format!("the clips last from {shortest} s to {longest} s"),
+            format!(
+                "the clips last from {} s to {} s",
+                shortest as f32, longest as f32
+            ),
         );
     }
 }

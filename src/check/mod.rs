@@ -6,6 +6,7 @@
 //! gathers all findings; each has a stable [`Code`] that says how serious it
 //! is. Nothing here knows how [`crate::write`] makes files.
 
+pub mod against;
 mod animations;
 mod buffers;
 mod code;

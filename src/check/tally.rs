@@ -34,6 +34,7 @@ impl Tally {
 
 impl std::fmt::Display for Worst {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "key {} at {} s", self.key, self.time)
+        // Times are float32 in the file: more digits would be noise.
+        write!(f, "key {} at {} s", self.key, self.time as f32)
     }
 }
