@@ -20,6 +20,7 @@ pub mod check;
 pub mod clip;
 pub mod convert;
 pub mod curve;
+pub mod inspect;
 pub mod math;
 pub mod read;
 #[cfg(feature = "render")]
