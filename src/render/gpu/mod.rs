@@ -7,7 +7,7 @@ mod target;
 use super::error::Error;
 use super::layer::Layer;
 use super::scene::{Light, Part, Scene, Texture};
-use pipeline::{Look, Pipelines};
+use pipeline::{Kind, Pipelines};
 use stock::Stock;
 use target::Target;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
@@ -32,8 +32,8 @@ impl Gpu {
     pub(crate) fn new(parts: &[Part], textures: &[Texture]) -> Result<Self, Error> {
         let adapter = adapter()?;
         let info = adapter.get_info();
-        let (device, queue) = pollster::block_on(adapter.request_device(&needs(&adapter)))
-            .map_err(|e| Error::Adapter(e.to_string()))?;
+        let (device, queue) =
+            pollster::block_on(adapter.request_device(&needs(&adapter))).map_err(Error::adapter)?;
         // Errors are caught in scopes; without a handler of ours wgpu panics
         // on what is raised outside them.
         device.on_uncaptured_error(std::sync::Arc::new(|_| {}));
@@ -91,7 +91,7 @@ impl Gpu {
                 continue;
             };
             let [first, end] = batch.draws.map(|d| (d * stock::PLACEMENT_BYTES) as u64);
-            pass.set_pipeline(self.pipelines.get(batch.look));
+            pass.set_pipeline(self.pipelines.get(batch.kind));
             pass.set_bind_group(1, &self.stock.textures[part.texture], &[]);
             pass.set_vertex_buffer(0, part.vertices.slice(..));
             pass.set_vertex_buffer(1, placements.slice(first..end));
@@ -105,16 +105,16 @@ impl Gpu {
     fn batches(&mut self, scene: &Scene) -> Vec<Batch> {
         let mut batches: Vec<Batch> = Vec::new();
         for (index, draw) in scene.draws.iter().enumerate() {
-            let look = Look::new(scene.material(draw), draw.mirrored);
+            let kind = Kind::new(scene.material(draw), draw.mirrored);
             match batches.last_mut() {
-                Some(last) if (last.part, last.look) == (draw.part, look) => last.draws[1] += 1,
+                Some(last) if (last.part, last.kind) == (draw.part, kind) => last.draws[1] += 1,
                 _ => batches.push(Batch {
                     part: draw.part,
-                    look,
+                    kind,
                     draws: [index, index + 1],
                 }),
             }
-            self.pipelines.prepare(&self.device, look);
+            self.pipelines.prepare(&self.device, kind);
         }
         batches
     }
@@ -149,10 +149,10 @@ impl Gpu {
     }
 }
 
-/// Draws of one part in one look.
+/// Draws of one part in one kind.
 struct Batch {
     part: usize,
-    look: Look,
+    kind: Kind,
     /// The first, and one past the last.
     draws: [usize; 2],
 }
@@ -176,7 +176,9 @@ fn adapter() -> Result<wgpu::Adapter, Error> {
     descriptor.flags = wgpu::InstanceFlags::empty();
     let instance = wgpu::Instance::new(descriptor);
     let found = instance.request_adapter(&wgpu::RequestAdapterOptions::default());
-    pollster::block_on(found).map_err(|e| Error::NoAdapter(e.to_string()))
+    pollster::block_on(found).map_err(|e| Error::NoAdapter {
+        reason: e.to_string(),
+    })
 }
 
 /// As little as possible, but pictures, textures and meshes as large as the
@@ -205,7 +207,7 @@ fn checked<T>(device: &wgpu::Device, work: impl FnOnce() -> Result<T, Error>) ->
         .filter_map(|scope| pollster::block_on(scope.pop()))
         .collect();
     match complaints.first() {
-        Some(complaint) => Err(Error::Adapter(complaint.to_string())),
+        Some(complaint) => Err(Error::adapter(complaint)),
         None => done,
     }
 }

@@ -11,16 +11,16 @@ pub(super) const SAMPLES: u32 = 4;
 
 /// What sets pipelines apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) struct Look {
+pub(super) struct Kind {
     masked: bool,
     blended: bool,
     double_sided: bool,
     mirrored: bool,
 }
 
-impl Look {
+impl Kind {
     pub(super) fn new(material: &Material, mirrored: bool) -> Self {
-        Look {
+        Kind {
             masked: matches!(material.alpha, Alpha::Mask(_)),
             blended: material.alpha == Alpha::Blend,
             double_sided: material.double_sided,
@@ -29,10 +29,10 @@ impl Look {
     }
 }
 
-/// The pipelines in use, made when a look is first seen.
+/// The pipelines in use, made when a kind is first seen.
 #[derive(Debug)]
 pub(super) struct Pipelines {
-    made: HashMap<Look, wgpu::RenderPipeline>,
+    made: HashMap<Kind, wgpu::RenderPipeline>,
     shader: wgpu::ShaderModule,
     layout: wgpu::PipelineLayout,
     light: wgpu::BindGroupLayout,
@@ -62,17 +62,17 @@ impl Pipelines {
         }
     }
 
-    /// Makes the pipeline for a look unless there is one.
-    pub(super) fn prepare(&mut self, device: &wgpu::Device, look: Look) {
-        if !self.made.contains_key(&look) {
-            let pipeline = self.make(device, look);
-            self.made.insert(look, pipeline);
+    /// Makes the pipeline for a kind unless there is one.
+    pub(super) fn prepare(&mut self, device: &wgpu::Device, kind: Kind) {
+        if !self.made.contains_key(&kind) {
+            let pipeline = self.make(device, kind);
+            self.made.insert(kind, pipeline);
         }
     }
 
-    /// The pipeline for a look that was prepared.
-    pub(super) fn get(&self, look: Look) -> &wgpu::RenderPipeline {
-        &self.made[&look]
+    /// The pipeline for a kind that was prepared.
+    pub(super) fn get(&self, kind: Kind) -> &wgpu::RenderPipeline {
+        &self.made[&kind]
     }
 
     pub(super) fn light(&self, device: &wgpu::Device, buffer: &wgpu::Buffer) -> wgpu::BindGroup {
@@ -92,10 +92,10 @@ impl Pipelines {
         bind(device, &self.texture, &resources)
     }
 
-    fn make(&self, device: &wgpu::Device, look: Look) -> wgpu::RenderPipeline {
+    fn make(&self, device: &wgpu::Device, kind: Kind) -> wgpu::RenderPipeline {
         let constants = [
-            ("MASKED", f64::from(u8::from(look.masked))),
-            ("BLENDED", f64::from(u8::from(look.blended))),
+            ("MASKED", f64::from(u8::from(kind.masked))),
+            ("BLENDED", f64::from(u8::from(kind.blended))),
         ];
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: None,
@@ -106,8 +106,8 @@ impl Pipelines {
                 compilation_options: Default::default(),
                 buffers: &[Some(corners()), Some(placements())],
             },
-            primitive: primitive(look),
-            depth_stencil: Some(depth(look)),
+            primitive: primitive(kind),
+            depth_stencil: Some(depth(kind)),
             multisample: wgpu::MultisampleState {
                 count: SAMPLES,
                 ..Default::default()
@@ -119,7 +119,7 @@ impl Pipelines {
                     constants: &constants,
                     ..Default::default()
                 },
-                targets: &[Some(colour(look))],
+                targets: &[Some(colour(kind))],
             }),
             multiview_mask: None,
             cache: None,
@@ -127,32 +127,32 @@ impl Pipelines {
     }
 }
 
-fn primitive(look: Look) -> wgpu::PrimitiveState {
+fn primitive(kind: Kind) -> wgpu::PrimitiveState {
     wgpu::PrimitiveState {
-        front_face: if look.mirrored {
+        front_face: if kind.mirrored {
             wgpu::FrontFace::Cw
         } else {
             wgpu::FrontFace::Ccw
         },
-        cull_mode: (!look.double_sided).then_some(wgpu::Face::Back),
+        cull_mode: (!kind.double_sided).then_some(wgpu::Face::Back),
         ..Default::default()
     }
 }
 
-fn depth(look: Look) -> wgpu::DepthStencilState {
+fn depth(kind: Kind) -> wgpu::DepthStencilState {
     wgpu::DepthStencilState {
         format: DEPTH,
-        depth_write_enabled: Some(!look.blended),
+        depth_write_enabled: Some(!kind.blended),
         depth_compare: Some(wgpu::CompareFunction::Greater),
         stencil: Default::default(),
         bias: Default::default(),
     }
 }
 
-fn colour(look: Look) -> wgpu::ColorTargetState {
+fn colour(kind: Kind) -> wgpu::ColorTargetState {
     wgpu::ColorTargetState {
         format: COLOUR,
-        blend: look
+        blend: kind
             .blended
             .then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
         write_mask: wgpu::ColorWrites::ALL,

@@ -87,15 +87,14 @@ impl Target {
         layer: &mut Layer,
         at: (u32, u32),
     ) -> Result<(), Error> {
-        let failed = |e: &dyn std::fmt::Display| Error::Adapter(e.to_string());
         self.rows.map_async(wgpu::MapMode::Read, .., |_| {});
         let wait = wgpu::PollType::Wait {
             submission_index: None,
             timeout: Some(PATIENCE),
         };
-        device.poll(wait).map_err(|e| failed(&e))?;
+        device.poll(wait).map_err(Error::adapter)?;
         // Fails when mapping did.
-        let mapped = self.rows.get_mapped_range(..).map_err(|e| failed(&e))?;
+        let mapped = self.rows.get_mapped_range(..).map_err(Error::adapter)?;
         let width = self.size.0.min(layer.width() - at.0) as usize * 4;
         let stride = layer.width() as usize * 4;
         let rows = layer.chunks_exact_mut(stride).skip(at.1 as usize);

@@ -12,7 +12,7 @@ const REQUIRED: &str = "DAT2GLB_REQUIRE_ADAPTER";
 fn gpu(stage: &Stage) -> Option<Gpu> {
     match Gpu::new(&stage.parts, &stage.textures) {
         Ok(gpu) => Some(gpu),
-        Err(Error::NoAdapter(reason)) => {
+        Err(Error::NoAdapter { reason }) => {
             let required = std::env::var_os(REQUIRED).is_some_and(|v| v == "1");
             assert!(!required, "{REQUIRED}=1, but there is no adapter: {reason}");
             eprintln!("NOT RUN for want of a graphics adapter: {reason}");

@@ -2,6 +2,7 @@
 
 mod cpu;
 mod gpu;
+mod load;
 
 use super::frame::{Frame, Framing};
 use super::scene::{Alpha, Level, Material, Part, Scene, Texture, Vertex, Wrap};
