@@ -19,6 +19,7 @@ pub mod asset;
 pub mod check;
 pub mod clip;
 pub mod curve;
+pub mod inspect;
 pub mod read;
 #[cfg(feature = "render")]
 pub mod render;

@@ -196,36 +196,59 @@ impl Asset {
     /// join vertices to triangles.
     pub fn indices(&mut self, accessor: usize) -> Result<Vec<u32>, Error> {
         let shape = self.shape(accessor)?;
+        let mut out = Vec::new();
+        self.indices_into(&shape, 0..shape.count, &mut out)?;
+        Ok(out)
+    }
+
+    /// Elements of a scalar integer accessor, into `out`, which is cleared
+    /// first.
+    pub(crate) fn indices_into(
+        &mut self,
+        shape: &Shape,
+        elements: Range<usize>,
+        out: &mut Vec<u32>,
+    ) -> Result<(), Error> {
         let unsigned = matches!(
             shape.component,
             ComponentType::U8 | ComponentType::U16 | ComponentType::U32
         );
         if !unsigned || shape.components != 1 {
             return Err(Error::data(
-                shape.pointer,
+                shape.pointer.clone(),
                 "must hold single unsigned integers",
             ));
         }
-        let range = shape.checked(&(0..shape.count))?;
-        let mut out = Vec::new();
+        let range = shape.checked(&elements)?;
+        out.clear();
         match &shape.elements {
             Some(stored) => {
-                out.reserve(shape.count);
+                out.reserve(elements.len());
                 self.each_run(stored, range.clone(), |bytes| {
-                    push_integers(shape.component, bytes, &mut out);
+                    push_integers(shape.component, bytes, out);
                 })?;
             }
-            None => out.resize(shape.count, 0),
+            None => out.resize(elements.len(), 0),
         }
-        self.replace_sparse(&shape, range, |asset, values, into, from| {
+        self.replace_sparse(shape, range, |asset, values, into, from| {
             let mut one = Vec::new();
             asset.each_run(values, from..from + 1, |bytes| {
                 push_integers(shape.component, bytes, &mut one);
             })?;
             out[into] = one[0];
             Ok(())
-        })?;
-        Ok(out)
+        })
+    }
+
+    /// The indices of an accessor's sparse elements.
+    pub(crate) fn sparse_indices(&mut self, shape: &Shape) -> Result<Vec<u32>, Error> {
+        let mut indices = Vec::new();
+        if let Some(sparse) = &shape.sparse {
+            self.each_run(&sparse.indices, 0..sparse.count, |bytes| {
+                push_integers(sparse.index_type, bytes, &mut indices);
+            })?;
+        }
+        Ok(indices)
     }
 
     /// Where a buffer view lies; it is checked to exist.

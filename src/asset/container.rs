@@ -76,8 +76,9 @@ impl Container {
         }
     }
 
-    /// The JSON text, without a byte-order mark and without padding.
-    pub(super) fn json(&self, main: &mut dyn Source) -> Result<Vec<u8>, Error> {
+    /// The JSON text, without a byte-order mark and without zero bytes after
+    /// it, and whether it had them.
+    pub(super) fn json(&self, main: &mut dyn Source) -> Result<(Vec<u8>, JsonForm), Error> {
         let (start, length) = match self {
             Container::Text { length } => (0, *length),
             Container::Glb(glb) => match glb.chunks.first() {
@@ -93,13 +94,17 @@ impl Container {
         main.seek(SeekFrom::Start(start))?;
         let mut json = Vec::new();
         main.take(length).read_to_end(&mut json)?;
-        if json.starts_with(BYTE_ORDER_MARK) {
+        let form = JsonForm {
+            byte_order_mark: json.starts_with(BYTE_ORDER_MARK),
+            zero_padded: json.last() == Some(&0),
+        };
+        if form.byte_order_mark {
             json.drain(..BYTE_ORDER_MARK.len());
         }
         while json.last() == Some(&0) {
             json.pop();
         }
-        Ok(json)
+        Ok((json, form))
     }
 
     /// Where the binary chunk begins, and how many bytes it really has.
@@ -120,8 +125,17 @@ impl Container {
     }
 }
 
+/// What was taken off the JSON text before it was parsed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct JsonForm {
+    /// It began with a byte-order mark.
+    pub byte_order_mark: bool,
+    /// Zero bytes came after it.
+    pub zero_padded: bool,
+}
+
 /// What some editors put before UTF-8 text.
-pub(crate) const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
+const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 
 /// The rest of a `.glb` after its magic.
 fn glb(main: &mut dyn Source, length: u64) -> Result<Glb, Error> {
@@ -143,6 +157,10 @@ fn glb(main: &mut dyn Source, length: u64) -> Result<Glb, Error> {
         let claimed = u64::from(u32_from(main)?);
         let mut kind = [0; 4];
         main.read_exact(&mut kind)?;
+        // Beyond its end according to the header, only what must be a chunk.
+        if at >= declared && kind != JSON && kind != BIN {
+            break;
+        }
         let start = at + CHUNK_HEADER;
         let chunk = Chunk {
             kind,

@@ -21,6 +21,7 @@ use std::io::{self, Read, Seek, SeekFrom};
 
 use gltf::json::Root;
 
+pub(crate) use accessor::Layout;
 pub use accessor::Shape;
 pub use container::Container;
 
@@ -90,6 +91,7 @@ impl Error {
 pub struct Asset {
     root: Root,
     json: Vec<u8>,
+    json_form: container::JsonForm,
     container: Container,
     main: Box<dyn Source>,
     resolve: Box<dyn Resolve>,
@@ -134,12 +136,13 @@ impl Asset {
     /// file shows when that part is read, or in [`crate::check`].
     pub fn open(mut main: Box<dyn Source>, resolve: Box<dyn Resolve>) -> Result<Asset, Error> {
         let container = Container::read(&mut *main)?;
-        let json = container.json(&mut *main)?;
+        let (json, json_form) = container.json(&mut *main)?;
         let root = parse::root(&json)?;
         let stores = root.buffers.iter().map(|_| None).collect();
         Ok(Asset {
             root,
             json,
+            json_form,
             container,
             main,
             resolve,
@@ -157,6 +160,11 @@ impl Asset {
     /// The JSON's own text, without padding.
     pub fn json(&self) -> &[u8] {
         &self.json
+    }
+
+    /// What was taken off the JSON's text.
+    pub fn json_form(&self) -> container::JsonForm {
+        self.json_form
     }
 
     /// How the file is put together.

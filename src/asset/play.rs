@@ -8,6 +8,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
+use gltf::json::accessor::ComponentType;
 pub use gltf::json::animation::{Interpolation, Property};
 use gltf::json::validation::Checked;
 
@@ -59,6 +60,11 @@ impl Channel {
             Interpolation::CubicSpline => 3 * self.width,
             _ => self.width,
         }
+    }
+
+    /// The type in which the values are stored.
+    pub fn component(&self) -> ComponentType {
+        self.values.component
     }
 
     /// The elements of the output accessor that belong to these keys.
@@ -354,7 +360,8 @@ fn dot(a: [f64; 4], b: [f64; 4]) -> f64 {
 #[derive(Debug)]
 pub struct Keys<'a> {
     channel: &'a Channel,
-    next: usize,
+    /// The keys that `times` and `values` hold.
+    range: Range<usize>,
     times: Vec<f32>,
     values: Vec<f32>,
 }
@@ -375,7 +382,7 @@ impl<'a> Keys<'a> {
     pub fn new(channel: &'a Channel) -> Self {
         Keys {
             channel,
-            next: 0,
+            range: 0..0,
             times: Vec::new(),
             values: Vec::new(),
         }
@@ -383,22 +390,29 @@ impl<'a> Keys<'a> {
 
     /// The next keys; `None` after the last.
     pub fn next(&mut self, asset: &mut Asset) -> Result<Option<Block<'_>>, Error> {
+        self.read(asset)?;
+        Ok(self.block())
+    }
+
+    /// Reads the next keys.
+    pub(crate) fn read(&mut self, asset: &mut Asset) -> Result<(), Error> {
         const NUMBERS: usize = 1 << 16;
-        let channel = self.channel;
-        let first = self.next;
-        if first == channel.keys {
-            return Ok(None);
-        }
+        let (channel, first) = (self.channel, self.range.end);
         let count = (NUMBERS / channel.stored_width()).max(1);
-        let keys = first..channel.keys.min(first + count);
-        asset.floats_into(&channel.times, keys.clone(), &mut self.times)?;
-        let range = channel.value_range(keys.clone());
-        asset.floats_into(&channel.values, range, &mut self.values)?;
-        self.next = keys.end;
-        Ok(Some(Block {
-            first,
+        let range = first..channel.keys.min(first.saturating_add(count));
+        asset.floats_into(&channel.times, range.clone(), &mut self.times)?;
+        let values = channel.value_range(range.clone());
+        asset.floats_into(&channel.values, values, &mut self.values)?;
+        self.range = range;
+        Ok(())
+    }
+
+    /// The keys read last, if any were left.
+    pub(crate) fn block(&self) -> Option<Block<'_>> {
+        (!self.range.is_empty()).then_some(Block {
+            first: self.range.start,
             times: &self.times,
             values: &self.values,
-        }))
+        })
     }
 }

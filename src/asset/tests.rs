@@ -246,7 +246,7 @@ fn a_channel_may_lack_its_node() {
 }
 
 /// An asset of one node with one channel.
-fn animated(path: &str, interpolation: &str, times: &[f32], values: &[f32]) -> Asset {
+pub(crate) fn animated(path: &str, interpolation: &str, times: &[f32], values: &[f32]) -> Asset {
     let (kind, width) = match path {
         "rotation" => ("VEC4", 4),
         "weights" => ("SCALAR", 1),

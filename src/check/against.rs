@@ -1,0 +1,284 @@
+//! Compares how a file plays with a curve it should follow.
+//!
+//! The file is played as the specification says; where it should be is for
+//! the caller to say, as a function of time. Keys are streamed: memory does
+//! not grow with the file.
+
+use serde::Serialize;
+
+use crate::asset::play::{Channel, Clip, Interpolation, Keys, Property, at_key, between, slerp};
+use crate::asset::{Asset, Error};
+
+/// Where between two samples the file is compared, as parts of the interval.
+const BETWEEN: [f64; 3] = [0.25, 0.5, 0.75];
+
+/// The largest angle at some kind of time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Largest {
+    /// The angle between file and curve, degrees.
+    pub degrees: f64,
+    /// When, seconds.
+    pub time: f64,
+    /// How many times were compared.
+    pub compared: u64,
+}
+
+/// How far a node's rotation strays from a curve.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Difference {
+    /// At the input's keys.
+    pub keys: Largest,
+    /// At the file's keys.
+    pub samples: Largest,
+    /// Between neighbouring keys of the file.
+    pub between: Largest,
+}
+
+impl Largest {
+    fn note(&mut self, degrees: f64, time: f64) {
+        self.compared += 1;
+        if degrees > self.degrees || self.compared == 1 {
+            *self = Largest {
+                degrees,
+                time,
+                ..*self
+            };
+        }
+    }
+}
+
+impl Difference {
+    /// The largest angle of all.
+    pub fn largest(&self) -> Largest {
+        let [first, rest @ ..] = [self.keys, self.samples, self.between];
+        rest.into_iter()
+            .fold(first, |a, b| if b.degrees > a.degrees { b } else { a })
+    }
+}
+
+/// Compares the rotation of `node` in `clip` with `curve`, which gives a
+/// quaternion x y z w for a time in seconds: at the times of the file's keys,
+/// between them, and at `keys`, the input's key times in rising order.
+///
+/// A node that the clip does not turn keeps the rotation it has.
+pub fn rotation(
+    asset: &mut Asset,
+    clip: &Clip,
+    node: usize,
+    keys: &[f64],
+    curve: &dyn Fn(f64) -> [f64; 4],
+) -> Result<Difference, Error> {
+    let channel = clip
+        .channels
+        .iter()
+        .find(|channel| channel.node == node && channel.property == Property::Rotation);
+    match channel {
+        Some(channel) => played(asset, channel, keys, curve),
+        None => resting(asset, node, keys, curve),
+    }
+}
+
+/// A key of the file: its time and the numbers stored for it.
+struct Sample {
+    time: f64,
+    stored: Vec<f64>,
+}
+
+fn played(
+    asset: &mut Asset,
+    channel: &Channel,
+    keys: &[f64],
+    curve: &dyn Fn(f64) -> [f64; 4],
+) -> Result<Difference, Error> {
+    let mut difference = Difference::default();
+    let mut keys = keys.iter().copied().peekable();
+    let mut previous: Option<Sample> = None;
+    let mut blocks = Keys::new(channel);
+    while let Some(block) = blocks.next(asset)? {
+        let values = block.values.chunks_exact(channel.stored_width());
+        for (&time, stored) in block.times.iter().zip(values) {
+            let sample = Sample {
+                time: f64::from(time),
+                stored: stored.iter().copied().map(f64::from).collect(),
+            };
+            let value = four(at_key(channel, &sample.stored));
+            difference
+                .samples
+                .note(degrees(value, curve(sample.time)), sample.time);
+            // Keys up to this sample: before the first it holds.
+            while let Some(key) = keys.next_if(|&key| key <= sample.time) {
+                let got = match &previous {
+                    Some(previous) if key < sample.time => at(channel, previous, &sample, key),
+                    _ => value,
+                };
+                difference.keys.note(degrees(got, curve(key)), key);
+            }
+            if let Some(previous) = &previous {
+                for u in BETWEEN {
+                    let time = previous.time + u * (sample.time - previous.time);
+                    let got = at(channel, previous, &sample, time);
+                    difference.between.note(degrees(got, curve(time)), time);
+                }
+            }
+            previous = Some(sample);
+        }
+    }
+    if let Some(last) = previous {
+        let value = four(at_key(channel, &last.stored));
+        for key in keys {
+            difference.keys.note(degrees(value, curve(key)), key);
+        }
+    }
+    Ok(difference)
+}
+
+/// The channel's rotation at a time between two neighbouring keys.
+fn at(channel: &Channel, from: &Sample, to: &Sample, time: f64) -> [f64; 4] {
+    let length = to.time - from.time;
+    let u = (time - from.time) / length;
+    match channel.interpolation {
+        Interpolation::Linear => slerp(four(&from.stored), four(&to.stored), u),
+        _ => four(&between(channel, &from.stored, &to.stored, u, length)),
+    }
+}
+
+fn resting(
+    asset: &Asset,
+    node: usize,
+    keys: &[f64],
+    curve: &dyn Fn(f64) -> [f64; 4],
+) -> Result<Difference, Error> {
+    let Some(stored) = asset.root().nodes.get(node) else {
+        let problem = "there is no such node";
+        return Err(Error::data(format!("/nodes/{node}"), problem));
+    };
+    let rotation = stored.rotation.unwrap_or_default().0.map(f64::from);
+    let mut difference = Difference::default();
+    for (i, &key) in keys.iter().enumerate() {
+        difference.keys.note(degrees(rotation, curve(key)), key);
+        for u in keys.get(i + 1).into_iter().flat_map(|_| BETWEEN) {
+            let time = key + u * (keys[i + 1] - key);
+            difference
+                .between
+                .note(degrees(rotation, curve(time)), time);
+        }
+    }
+    Ok(difference)
+}
+
+fn four(q: &[f64]) -> [f64; 4] {
+    std::array::from_fn(|i| q.get(i).copied().unwrap_or(f64::NAN))
+}
+
+/// The angle of the rotation that leads from one to the other, degrees.
+///
+/// Neither needs to be of unit length. The arc tangent is accurate for the
+/// tiniest angles, where a cosine would round them to zero. What is no
+/// rotation, zero or not finite, is as far as can be.
+pub fn degrees(a: [f64; 4], b: [f64; 4]) -> f64 {
+    let [ax, ay, az, aw] = a;
+    let [bx, by, bz, bw] = b;
+    // The relative rotation, a⁻¹ b but for its length.
+    let x = aw * bx - bw * ax - (ay * bz - az * by);
+    let y = aw * by - bw * ay - (az * bx - ax * bz);
+    let z = aw * bz - bw * az - (ax * by - ay * bx);
+    let w = aw * bw + ax * bx + ay * by + az * bz;
+    let sine = (x * x + y * y + z * z).sqrt();
+    if !(sine.is_finite() && w.is_finite()) || (sine == 0.0 && w == 0.0) {
+        return 180.0;
+    }
+    2.0 * sine.atan2(w.abs()).to_degrees()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::asset::tests::animated;
+
+    fn turn(degrees: f64) -> [f64; 4] {
+        let half = degrees.to_radians() / 2.0;
+        [half.sin(), 0.0, 0.0, half.cos()]
+    }
+
+    fn file(interpolation: &str, times: &[f32], angles: &[f64]) -> Asset {
+        let values: Vec<f32> = angles
+            .iter()
+            .flat_map(|&a| turn(a))
+            .map(|x| x as f32)
+            .collect();
+        animated("rotation", interpolation, times, &values)
+    }
+
+    fn compared(asset: &mut Asset, keys: &[f64], curve: &dyn Fn(f64) -> [f64; 4]) -> Difference {
+        let clip = asset.clips().remove(0);
+        rotation(asset, &clip, 0, keys, curve).unwrap()
+    }
+
+    #[track_caller]
+    fn near(found: Largest, degrees: f64, time: f64) {
+        assert!((found.degrees - degrees).abs() < 1e-5, "{found:?}");
+        assert_eq!(found.time, time, "{found:?}");
+    }
+
+    #[test]
+    fn angles_are_accurate_from_tiny_to_half_a_turn() {
+        for angle in [1e-12, 1e-7, 1e-3, 1.0, 90.0, 179.999, 180.0] {
+            for start in [0.0, 33.0] {
+                let (a, b) = (turn(start).map(|x| -3.0 * x), turn(start + angle));
+                let got = degrees(a, b);
+                assert!(
+                    (got - angle).abs() < 1e-13 + 1e-14 * angle,
+                    "{angle}: {got}"
+                );
+            }
+        }
+        assert!(degrees(turn(0.0), turn(350.0)) - 10.0 < 1e-12);
+        assert_eq!(degrees([0.0; 4], turn(1.0)), 180.0);
+        assert_eq!(degrees([f64::NAN; 4], turn(1.0)), 180.0);
+    }
+
+    #[test]
+    fn a_file_that_follows_the_curve_does_not_stray() {
+        let mut asset = file("LINEAR", &[0.0, 0.5, 2.0], &[0.0, 15.0, 60.0]);
+        let found = compared(&mut asset, &[0.0, 0.3, 2.0], &|t| turn(30.0 * t));
+        assert!(found.largest().degrees < 1e-5, "{found:?}");
+        assert_eq!(
+            (
+                found.keys.compared,
+                found.samples.compared,
+                found.between.compared
+            ),
+            (3, 3, 6)
+        );
+    }
+
+    #[test]
+    fn each_kind_of_time_has_its_own_largest_angle() {
+        // The curve is 40 t² degrees; straight lines stray most half way.
+        let mut asset = file("LINEAR", &[0.0, 0.5, 1.0], &[0.0, 10.0, 41.0]);
+        let found = compared(&mut asset, &[0.0, 0.2], &|t| turn(40.0 * t * t));
+        near(found.samples, 1.0, 1.0);
+        near(found.between, 3.0, 0.75);
+        near(found.keys, 4.0 - 1.6, 0.2);
+        near(found.largest(), 3.0, 0.75);
+    }
+
+    #[test]
+    fn outside_of_its_keys_the_file_holds() {
+        let mut asset = file("LINEAR", &[1.0, 2.0], &[10.0, 20.0]);
+        let curve = |t: f64| turn(10.0 * t);
+        near(compared(&mut asset, &[0.0], &curve).keys, 10.0, 0.0);
+        near(compared(&mut asset, &[5.0], &curve).keys, 30.0, 5.0);
+    }
+
+    #[test]
+    fn steps_and_resting_nodes() {
+        let mut asset = file("STEP", &[0.0, 1.0], &[0.0, 8.0]);
+        let found = compared(&mut asset, &[], &|t| turn(8.0 * t));
+        near(found.between, 6.0, 0.75);
+        let mut asset = animated("translation", "LINEAR", &[0.0], &[0.0; 3]);
+        let found = compared(&mut asset, &[0.0, 1.0], &|t| turn(8.0 * t));
+        near(found.keys, 8.0, 1.0);
+        near(found.between, 6.0, 0.75);
+    }
+}
