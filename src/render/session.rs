@@ -11,8 +11,12 @@ use super::{MOST_PIXELS, Picture, Renderer, Time, cpu};
 use crate::asset::Asset;
 use crate::asset::play::{Clip, Player};
 
-/// Steps at which a clip is looked at to find how far its motion reaches.
-const FRAMING_STEPS: u32 = 64;
+/// Moments between a clip's ends at which it is looked at to find how far its
+/// motion reaches.
+const FRAMING_MOMENTS: u32 = 64;
+/// Multiples of the golden ratio, without their whole parts, lie evenly and yet
+/// fall into step with no turning part, however many turns a clip has.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// A file's geometry and a renderer, for any number of pictures.
 ///
@@ -185,10 +189,8 @@ impl Session {
             return Ok(frame);
         }
         let duration = self.duration(clip);
-        let steps = if duration > 0.0 { FRAMING_STEPS } else { 0 };
         let mut framing = Framing::new(size);
-        for step in 0..=steps {
-            let t = duration * f64::from(step) / f64::from(steps.max(1));
+        for t in moments(duration) {
             let pose = self.pose(asset, clip, t)?;
             pose.corners(&self.model)
                 .for_each(|corner| framing.add(corner));
@@ -213,6 +215,17 @@ impl Session {
             .and_then(|clip| self.clips.get(clip))
             .map_or(0.0, |c| c.duration);
         if duration.is_finite() { duration } else { 0.0 }
+    }
+}
+
+/// The ends of a clip and moments between them.
+fn moments(duration: f64) -> Vec<f64> {
+    match duration > 0.0 {
+        true => (0..=FRAMING_MOMENTS)
+            .map(|i| duration * (f64::from(i) * GOLDEN).fract())
+            .chain([duration])
+            .collect(),
+        false => vec![0.0],
     }
 }
 

@@ -351,15 +351,12 @@ fn clips_are_found_by_name_and_times_clamped_aloud() {
     );
 }
 
-#[test]
-fn the_whole_motion_stays_in_view() {
-    let mut file = plain_house();
-    let slide = [0.0, 0.0, 0.0, 50.0, 30.0, -20.0, -10.0, 3.0, 9.0];
-    file.animate("slide", 0, "translation", &slide);
+/// Panics when anything is drawn near the border at some time of the clip.
+fn stays_in_view(file: &File) {
     let mut asset = file.asset();
     let mut session = Session::new(&mut asset, Renderer::Cpu).unwrap();
-    for step in 0..=40 {
-        let time = Time::Fraction(f64::from(step) / 40.0);
+    for step in 0..=100 {
+        let time = Time::Fraction(f64::from(step) / 100.0);
         let background = Background::Transparent;
         let picture = session
             .picture(&mut asset, Some(0), time, (128, 80), background)
@@ -370,6 +367,31 @@ fn the_whole_motion_stays_in_view() {
             assert!(!(border && pixel[3] > 0), "step {step}: {x} {y}");
         }
     }
+}
+
+#[test]
+fn the_whole_motion_stays_in_view() {
+    let mut file = plain_house();
+    let slide = [0.0, 0.0, 0.0, 50.0, 30.0, -20.0, -10.0, 3.0, 9.0];
+    file.animate("slide", 0, "translation", &slide);
+    stays_in_view(&file);
+}
+
+#[test]
+fn turns_in_step_with_the_framing_stay_in_view() {
+    let mut file = plain_house();
+    file.json["nodes"][0]["scale"] = json!([0.2, 3, 1]);
+    let quarter = std::f32::consts::FRAC_1_SQRT_2;
+    let turn = [
+        [0.0, 1.0],
+        [quarter, quarter],
+        [1.0, 0.0],
+        [quarter, -quarter],
+    ];
+    let key = |i: usize| [0.0, 0.0, turn[i % 4][0], turn[i % 4][1]];
+    let keys: Vec<f32> = (0..=256).flat_map(key).collect();
+    file.animate("64 turns", 0, "rotation", &keys);
+    stays_in_view(&file);
 }
 
 #[test]
