@@ -1,0 +1,127 @@
+//! A look at a file as a person would take it: is anything there, does it
+//! move?
+
+use super::error::Error;
+use super::layer::covered;
+use super::session::Session;
+use crate::asset::play::{Channel, Keys, Property};
+use crate::asset::{self, Asset};
+
+/// Less than this share of pixels drawn is nothing to be seen.
+pub const LEAST_VISIBLE: f64 = 0.001;
+/// Where in a clip to look whether anything moves.
+const MOMENTS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
+
+/// What a look at a file shows.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Look {
+    /// The largest share of pixels, 0 to 1, drawn in any picture looked at.
+    pub covered: f64,
+    /// A finding for each clip, in the file's order.
+    pub clips: Vec<ClipLook>,
+    /// What the pictures were drawn with.
+    pub renderer: String,
+    /// What was not drawn or done otherwise than asked, a sentence each.
+    pub notes: Vec<String>,
+}
+
+impl Look {
+    /// Whether there is anything to be seen.
+    pub fn visible(&self) -> bool {
+        self.covered >= LEAST_VISIBLE
+    }
+}
+
+/// What a look at one clip shows.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct ClipLook {
+    /// Its index in the file's `animations`.
+    pub animation: usize,
+    /// Its name, where it has one.
+    pub name: Option<String>,
+    /// Whether its pictures differ; `None` where no channel changes anything
+    /// that this crate draws.
+    pub moves: Option<bool>,
+}
+
+impl Session {
+    /// Looks at the file half way through its first clip, and at all clips.
+    pub fn look(&mut self, asset: &mut Asset, size: (u32, u32)) -> Result<Look, Error> {
+        let mut covered = self.covered_close_up(asset, size)?;
+        let mut clips = Vec::new();
+        for clip in 0..self.clips.len() {
+            clips.push(ClipLook {
+                animation: self.clips[clip].animation,
+                name: self.clips[clip].name.clone(),
+                moves: match self.changes(asset, clip)? {
+                    true => Some(self.moves(asset, clip, size, &mut covered)?),
+                    false => None,
+                },
+            });
+        }
+        Ok(Look {
+            covered,
+            clips,
+            renderer: self.renderer().to_owned(),
+            notes: self.notes().to_vec(),
+        })
+    }
+
+    /// Seen from where the pose alone fills the view: in a view that holds a
+    /// wide motion, even a sound file may be small.
+    fn covered_close_up(&mut self, asset: &mut Asset, size: (u32, u32)) -> Result<f64, Error> {
+        let clip = self.clip(None)?;
+        let pose = self.pose(asset, clip, self.duration(clip) * 0.5)?;
+        let frame = self.close_up(&pose, size)?;
+        Ok(covered(&self.draw(&pose, &frame, size)?))
+    }
+
+    fn moves(
+        &mut self,
+        asset: &mut Asset,
+        clip: usize,
+        size: (u32, u32),
+        most: &mut f64,
+    ) -> Result<bool, Error> {
+        let duration = self.duration(Some(clip));
+        let first = self.layer(asset, Some(clip), 0.0, size)?;
+        *most = most.max(covered(&first));
+        for moment in &MOMENTS[1..] {
+            let layer = self.layer(asset, Some(clip), duration * moment, size)?;
+            *most = most.max(covered(&layer));
+            if layer != first {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// Whether a clip has a channel whose keys differ, of those that are
+    /// drawn: morph weights and joints are not.
+    fn changes(&self, asset: &mut Asset, clip: usize) -> Result<bool, Error> {
+        for channel in &self.clips[clip].channels {
+            let drawn = channel.property != Property::MorphTargetWeights
+                && !self.model.joints.contains(&channel.node);
+            if drawn && changes(asset, channel)? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+}
+
+/// Whether what is stored for a channel's keys differs from key to key.
+fn changes(asset: &mut Asset, channel: &Channel) -> Result<bool, asset::Error> {
+    let mut keys = Keys::new(channel);
+    let mut first: Option<Vec<f32>> = None;
+    while let Some(block) = keys.next(asset)? {
+        let mut stored = block.values.chunks_exact(channel.stored_width());
+        let first = first.get_or_insert_with(|| stored.next().unwrap_or_default().to_vec());
+        if stored.any(|key| key != first) {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}

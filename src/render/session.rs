@@ -1,0 +1,305 @@
+//! A file made ready once, and any number of pictures of it.
+
+use super::error::Error;
+use super::frame::{Frame, Framing};
+use super::gpu::Gpu;
+use super::layer::{Background, Layer, compose, covered};
+use super::load::Model;
+use super::pose::Pose;
+use super::scene::Scene;
+use super::{MOST_PIXELS, Picture, Renderer, Time, cpu};
+use crate::asset::Asset;
+use crate::asset::play::{Clip, Player};
+
+/// Moments between a clip's ends at which it is looked at to find how far its
+/// motion reaches.
+const FRAMING_MOMENTS: u32 = 64;
+/// Multiples of the golden ratio, without their whole parts, lie evenly and yet
+/// fall into step with no turning part, however many turns a clip has.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// A file's geometry and a renderer, for any number of pictures.
+///
+/// The asset that it was made from is read again for every pose: hand in the
+/// same one.
+#[derive(Debug)]
+pub struct Session {
+    pub(super) model: Model,
+    pub(super) clips: Vec<Clip>,
+    player: Player,
+    canvas: Canvas,
+    /// Whether the renderer may be given up for the built-in one.
+    may_fall_back: bool,
+    notes: Vec<String>,
+    /// The view found last, and for which clip and size.
+    framed: Option<(Option<usize>, (u32, u32), Frame)>,
+}
+
+/// What pictures are drawn with.
+#[derive(Debug)]
+enum Canvas {
+    Gpu(Box<Gpu>),
+    Cpu,
+}
+
+impl Session {
+    /// Reads the geometry and finds the renderer.
+    pub fn new(asset: &mut Asset, renderer: Renderer) -> Result<Self, Error> {
+        let model = Model::load(asset);
+        let mut notes = model.notes.clone();
+        let canvas = match renderer {
+            Renderer::Cpu => Canvas::Cpu,
+            Renderer::Wgpu => gpu(&model)?,
+            Renderer::Auto => gpu(&model).unwrap_or_else(|error| {
+                notes.push(fallen_back(&error));
+                Canvas::Cpu
+            }),
+        };
+        Ok(Session {
+            clips: asset.clips(),
+            model,
+            player: Player::new(),
+            canvas,
+            may_fall_back: renderer == Renderer::Auto,
+            notes,
+            framed: None,
+        })
+    }
+
+    /// The clips of the file, in its order.
+    pub fn clips(&self) -> &[Clip] {
+        &self.clips
+    }
+
+    /// The clip of that name; the first, if there is one, without a name.
+    pub fn clip(&self, name: Option<&str>) -> Result<Option<usize>, Error> {
+        let Some(name) = name else {
+            return Ok((!self.clips.is_empty()).then_some(0));
+        };
+        let found = self
+            .clips
+            .iter()
+            .position(|clip| clip.name.as_deref() == Some(name));
+        match found {
+            Some(clip) => Ok(Some(clip)),
+            None => Err(Error::NoClip {
+                name: name.to_owned(),
+                clips: self
+                    .clips
+                    .iter()
+                    .filter_map(|clip| clip.name.clone())
+                    .collect(),
+            }),
+        }
+    }
+
+    /// What pictures are drawn with, in words.
+    pub fn renderer(&self) -> &str {
+        match &self.canvas {
+            Canvas::Gpu(gpu) => &gpu.name,
+            Canvas::Cpu => "built-in software renderer",
+        }
+    }
+
+    /// What is not drawn or was done otherwise than asked, a sentence each.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// Draws a moment of a clip, an index into [`Session::clips`], or of the
+    /// file at rest. The view is the same for all times of a clip.
+    pub fn picture(
+        &mut self,
+        asset: &mut Asset,
+        clip: Option<usize>,
+        time: Time,
+        size: (u32, u32),
+        background: Background,
+    ) -> Result<Picture, Error> {
+        let (t, clamped) = time.within(self.duration(clip));
+        let layer = self.layer(asset, clip, t, size)?;
+        Ok(Picture {
+            covered: covered(&layer),
+            pixels: compose(layer, background),
+            renderer: self.renderer().to_owned(),
+            notes: self.notes.iter().cloned().chain(clamped).collect(),
+        })
+    }
+
+    /// The parts alone at `t` seconds, seen so that the whole clip is in view.
+    pub(super) fn layer(
+        &mut self,
+        asset: &mut Asset,
+        clip: Option<usize>,
+        t: f64,
+        size: (u32, u32),
+    ) -> Result<Layer, Error> {
+        let frame = self.frame(asset, clip, size)?;
+        let pose = self.pose(asset, clip, t)?;
+        self.draw(&pose, &frame, size)
+    }
+
+    /// Draws a pose as a camera sees it.
+    pub(super) fn draw(
+        &mut self,
+        pose: &Pose,
+        frame: &Frame,
+        size: (u32, u32),
+    ) -> Result<Layer, Error> {
+        let placed = pose.placed(&self.model);
+        let scene = Scene::new(&self.model.parts, &self.model.textures, placed, frame, size);
+        let Canvas::Gpu(gpu) = &mut self.canvas else {
+            return Ok(cpu::draw(&scene));
+        };
+        match gpu.draw(&scene) {
+            Err(error) if self.may_fall_back => {
+                let layer = cpu::draw(&scene);
+                self.notes.push(fallen_back(&error));
+                self.canvas = Canvas::Cpu;
+                Ok(layer)
+            }
+            drawn => drawn,
+        }
+    }
+
+    /// Where everything stands at `t` seconds.
+    pub(super) fn pose(
+        &mut self,
+        asset: &mut Asset,
+        clip: Option<usize>,
+        t: f64,
+    ) -> Result<Pose, Error> {
+        match clip.and_then(|clip| self.clips.get(clip)) {
+            Some(clip) => Ok(Pose::at(&self.model, asset, clip, &mut self.player, t)?),
+            None => Ok(Pose::rest(&self.model)),
+        }
+    }
+
+    /// The view that holds all of a clip's motion.
+    fn frame(
+        &mut self,
+        asset: &mut Asset,
+        clip: Option<usize>,
+        size: (u32, u32),
+    ) -> Result<Frame, Error> {
+        check(size)?;
+        if let Some((of, at, frame)) = self.framed
+            && (of, at) == (clip, size)
+        {
+            return Ok(frame);
+        }
+        let duration = self.duration(clip);
+        let mut framing = Framing::new(size);
+        for t in moments(duration) {
+            let pose = self.pose(asset, clip, t)?;
+            pose.corners(&self.model)
+                .for_each(|corner| framing.add(corner));
+        }
+        let frame = framing.frame();
+        self.framed = Some((clip, size, frame));
+        Ok(frame)
+    }
+
+    /// The view that a single pose fills.
+    pub(super) fn close_up(&self, pose: &Pose, size: (u32, u32)) -> Result<Frame, Error> {
+        check(size)?;
+        let mut framing = Framing::new(size);
+        pose.corners(&self.model)
+            .for_each(|corner| framing.add(corner));
+        Ok(framing.frame())
+    }
+
+    /// How long a clip is, seconds; 0 without a clip.
+    pub(super) fn duration(&self, clip: Option<usize>) -> f64 {
+        let duration = clip
+            .and_then(|clip| self.clips.get(clip))
+            .map_or(0.0, |c| c.duration);
+        if duration.is_finite() { duration } else { 0.0 }
+    }
+}
+
+/// The ends of a clip and moments between them.
+fn moments(duration: f64) -> Vec<f64> {
+    match duration > 0.0 {
+        true => (0..=FRAMING_MOMENTS)
+            .map(|i| duration * (f64::from(i) * GOLDEN).fract())
+            .chain([duration])
+            .collect(),
+        false => vec![0.0],
+    }
+}
+
+fn gpu(model: &Model) -> Result<Canvas, Error> {
+    Ok(Canvas::Gpu(Box::new(Gpu::new(
+        &model.parts,
+        &model.textures,
+    )?)))
+}
+
+/// One line, though errors may have several.
+fn fallen_back(error: &Error) -> String {
+    let reason = match error {
+        Error::NoAdapter { reason } => format!("no graphics adapter ({reason})"),
+        other => other.to_string(),
+    };
+    let words: Vec<&str> = reason.split_whitespace().collect();
+    format!(
+        "drawn by the built-in software renderer: {}",
+        words.join(" ")
+    )
+}
+
+fn check((width, height): (u32, u32)) -> Result<(), Error> {
+    let fits = |side| (1..=MOST_PIXELS).contains(&side);
+    match fits(width) && fits(height) {
+        true => Ok(()),
+        false => Err(Error::Size(width, height)),
+    }
+}
+
+impl Time {
+    /// Seconds within a clip, and a note when they had to be brought there.
+    fn within(self, duration: f64) -> (f64, Option<String>) {
+        let (t, asked) = match self {
+            Time::Seconds(t) => (t, format!("{t} s")),
+            Time::Fraction(share) => (share * duration, format!("{} %", share * 100.0)),
+        };
+        if t >= 0.0 && t <= duration {
+            return (t, None);
+        }
+        // Also where `t` is no number.
+        let past = t > duration;
+        let (at, side, end) = match past {
+            true => (duration, "after the clip's end", "end"),
+            false => (0.0, "before the clip's start", "start"),
+        };
+        let note = format!("{asked} is {side} (it lasts {duration} s): drew its {end}");
+        (at, Some(note))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_beyond_a_clip_are_clamped_and_said() {
+        for (time, expected, said) in [
+            (Time::Seconds(1.5), 1.5, ""),
+            (
+                Time::Seconds(9.0),
+                2.0,
+                "9 s is after the clip's end (it lasts 2 s): drew its end",
+            ),
+            (Time::Seconds(-1.0), 0.0, "-1 s is before the clip's start"),
+            (Time::Fraction(0.25), 0.5, ""),
+            (Time::Fraction(1.5), 2.0, "150 % is after"),
+            (Time::Seconds(f64::NAN), 0.0, "NaN s is before"),
+        ] {
+            let (t, note) = time.within(2.0);
+            assert_eq!(t, expected);
+            assert!(note.as_deref().unwrap_or("").starts_with(said), "{note:?}");
+            assert_eq!(note.is_some(), !said.is_empty());
+        }
+    }
+}
