@@ -18,6 +18,8 @@ use std::io::{self, Seek, Write};
 pub struct Options {
     /// Name of the animations; with several schemes each adds its own.
     pub name: String,
+    /// The input's name as the file keeps it.
+    pub input: String,
     /// One animation a scheme.
     pub schemes: Vec<Scheme>,
     /// What the motion does at its ends.
@@ -149,6 +151,11 @@ impl<'a> Plan<'a> {
         warnings.dedup();
         let scene = Scene::of(clip.body, clip.tracks.len());
         Ok(Plan { keyframes, source_name, options, scene, timelines, warnings })
+    }
+
+    /// How many boxes turn.
+    pub fn boxes(&self) -> usize {
+        self.keyframes.clip.tracks.len()
     }
 
     /// What the user should know before a sample is made.
@@ -284,7 +291,7 @@ impl<'a> Plan<'a> {
             fps: self.options.fps.to_string(),
             key_times: self.options.key_times,
             quat_order: self.keyframes.order.name(),
-            inputs: [Input { name: self.source_name, blake3: &self.keyframes.hash }],
+            inputs: [Input { name: &self.options.input, blake3: &self.keyframes.hash }],
             deviation_degrees: facts.iter().map(|f| rounded_up(f.deviation)).collect(),
         };
         serde_json::to_string(&recipe).expect("plain data becomes JSON")

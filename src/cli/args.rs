@@ -1,0 +1,357 @@
+//! The command line: commands, options, help.
+
+use clap::builder::{PossibleValue, TypedValueParser, ValueParser};
+use clap::{Args, Parser, Subcommand, ValueHint};
+use dat2glb::curve::{Ends, Scheme};
+use dat2glb::read::Order;
+use dat2glb::sample::Fps;
+use std::ffi::{OsStr, OsString};
+use std::path::{Path, PathBuf};
+
+const EXIT_CODES: &str = "\
+Exit codes: 0 done, 1 input refused, 2 usage, 3 output failed its check, 4 environment \
+(a full disk, a missing permission, no graphics adapter).";
+
+/// Turns quaternion keyframes into glTF animations that play right everywhere.
+#[derive(Debug, Parser)]
+#[command(name = "dat2glb", version, arg_required_else_help = true, after_help = EXIT_CODES)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Convert keyframes to an animated .glb or .gltf, and check it by loading it back
+    ///
+    /// `dat2glb IN.dat [OUT.glb]` is short for `dat2glb convert IN.dat [-o OUT.glb]`.
+    Convert(Convert),
+    /// Check any .glb or .gltf, and compare its motion with its input
+    Check(Check),
+    /// Draw a picture of a .glb or .gltf at a time of one of its clips
+    #[cfg(feature = "render")]
+    Thumbnail(Thumbnail),
+    /// Say what a file holds: keyframes, .glb or .gltf
+    Inspect(Inspect),
+    /// Print a small input to start from
+    Example(Example),
+    /// Print a completion script for a shell
+    Completions {
+        /// Which shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page
+    Man,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Convert {
+    /// Keyframe files (.dat); `-` reads standard input
+    #[arg(required = true, value_name = "IN", value_hint = ValueHint::FilePath)]
+    pub(crate) inputs: Vec<PathBuf>,
+    /// The file to write, .glb or .gltf (with a .bin beside it); `-` writes a .glb to
+    /// standard output. For several inputs a folder. Without it: next to the input, .glb
+    #[arg(short, long, value_name = "OUT", value_hint = ValueHint::AnyPath)]
+    pub(crate) output: Option<PathBuf>,
+    /// How rotations run from key to key; several, separated by commas, become one clip
+    /// each; `all` for every scheme
+    #[arg(long, value_name = "NAME[,NAME…]", default_value = "bessel", value_delimiter = ',', value_parser = schemes())]
+    scheme: Vec<Schemes>,
+    /// What the motion does at its ends
+    #[arg(long, default_value = "natural", value_parser = ends(), hide_possible_values = false)]
+    pub(crate) ends: Ends,
+    /// Samples per second: 60, 23.976, 30000/1001
+    #[arg(long, default_value = "60")]
+    pub(crate) fps: Fps,
+    /// Leave the key times out: an even grid of samples, which may miss the keys
+    #[arg(long)]
+    pub(crate) no_key_times: bool,
+    #[command(flatten)]
+    pub(crate) order: OrderFlag,
+    /// Draw a picture of the result too; for several inputs a folder
+    #[cfg(feature = "render")]
+    #[arg(long, value_name = "OUT.png", value_hint = ValueHint::FilePath)]
+    pub(crate) thumbnail: Option<PathBuf>,
+    /// Print the summary as JSON on standard output (on standard error where the .glb
+    /// goes to standard output)
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print errors only
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+impl Convert {
+    /// The schemes asked for, each once, in the order given.
+    pub(crate) fn schemes(&self) -> Vec<Scheme> {
+        let mut schemes = Vec::new();
+        for scheme in self.scheme.iter().flat_map(|asked| asked.0.iter().copied()) {
+            if !schemes.contains(&scheme) {
+                schemes.push(scheme);
+            }
+        }
+        schemes
+    }
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Check {
+    /// Files to check: .glb, .gltf
+    #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) files: Vec<PathBuf>,
+    /// Warnings fail too
+    #[arg(long)]
+    pub(crate) strict: bool,
+    /// Compare the motion with the curve through the keys of this input
+    #[arg(long, value_name = "IN.dat", value_hint = ValueHint::FilePath)]
+    pub(crate) against: Option<PathBuf>,
+    /// The largest angle, degrees, that playback may be off the curve; without it, what
+    /// convert stored in the file
+    #[arg(long, value_name = "DEG", requires = "against", value_parser = degrees)]
+    pub(crate) max_error: Option<f64>,
+    /// The scheme of a file that does not say it itself
+    #[arg(long, value_name = "NAME", requires = "against", value_parser = scheme())]
+    pub(crate) scheme: Option<Scheme>,
+    /// The ends of a file that does not say them itself
+    #[arg(long, requires = "against", value_parser = ends())]
+    pub(crate) ends: Option<Ends>,
+    #[command(flatten)]
+    pub(crate) order: OrderFlag,
+    /// Look at pictures too: is anything to be seen, does it move?
+    #[cfg(feature = "render")]
+    #[arg(long)]
+    pub(crate) render: bool,
+    #[cfg(feature = "render")]
+    #[command(flatten)]
+    pub(crate) renderer: RendererFlag,
+    /// Print the report as JSON on standard output, a line a file
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print nothing but what cannot be read; the exit code tells
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+#[cfg(feature = "render")]
+#[derive(Args, Debug)]
+pub(crate) struct Thumbnail {
+    /// The file to draw: .glb, .gltf
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) file: PathBuf,
+    /// The picture to write; without it FILE.png. `-` writes it to standard output
+    #[arg(short, long, value_name = "OUT.png", value_hint = ValueHint::FilePath)]
+    pub(crate) output: Option<PathBuf>,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = size)]
+    pub(crate) size: (u32, u32),
+    /// Seconds, or a share of the clip
+    #[arg(long, value_name = "2.5|50%", default_value = "50%", value_parser = time, allow_hyphen_values = true)]
+    pub(crate) time: dat2glb::render::Time,
+    /// The clip's name; without it the first clip
+    #[arg(long, value_name = "NAME")]
+    pub(crate) clip: Option<String>,
+    #[command(flatten)]
+    pub(crate) renderer: RendererFlag,
+    /// Print errors only
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Inspect {
+    /// The file: keyframes, .glb, .gltf; `-` reads keyframes from standard input
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) file: PathBuf,
+    #[command(flatten)]
+    pub(crate) order: OrderFlag,
+    /// Print it as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Example {
+    /// Which kind of input
+    #[arg(value_enum)]
+    pub(crate) kind: super::example::Kind,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct OrderFlag {
+    /// The order of a quaternion's parts in the input; overrides its header
+    #[arg(long = "quat-order", value_name = "ORDER", value_parser = named(Order::from_name, vec![("wxyz", ""), ("xyzw", "")]))]
+    pub(crate) order: Option<Order>,
+}
+
+#[cfg(feature = "render")]
+#[derive(Args, Debug)]
+pub(crate) struct RendererFlag {
+    /// What to draw with
+    #[arg(long, default_value = "auto", value_parser = named(renderer_named, vec![
+        ("auto", "wgpu where it finds an adapter, else in software"),
+        ("wgpu", "a graphics adapter, hardware or software"),
+        ("cpu", "the built-in software renderer, the same on every machine"),
+    ]))]
+    pub(crate) renderer: dat2glb::render::Renderer,
+}
+
+#[cfg(feature = "render")]
+fn renderer_named(name: &str) -> Option<dat2glb::render::Renderer> {
+    use dat2glb::render::Renderer;
+    match name {
+        "auto" => Some(Renderer::Auto),
+        "wgpu" => Some(Renderer::Wgpu),
+        "cpu" => Some(Renderer::Cpu),
+        _ => None,
+    }
+}
+
+/// One word of `--scheme`: a scheme, or all of them.
+#[derive(Clone, Debug)]
+struct Schemes(&'static [Scheme]);
+
+/// A parser of names that the help text lists.
+fn named<T: Clone + Send + Sync + 'static>(
+    from_name: fn(&str) -> Option<T>,
+    names: Vec<(&'static str, &'static str)>,
+) -> ValueParser {
+    let value = |(name, help): (&'static str, &'static str)| match help {
+        "" => PossibleValue::new(name),
+        help => PossibleValue::new(name).help(help),
+    };
+    let values = clap::builder::PossibleValuesParser::new(names.into_iter().map(value));
+    ValueParser::new(values.map(move |name| from_name(&name).expect("only listed names get here")))
+}
+
+fn scheme_names() -> Vec<(&'static str, &'static str)> {
+    Scheme::ALL.iter().map(|scheme| (scheme.name(), scheme.summary())).collect()
+}
+
+fn scheme() -> ValueParser {
+    named(Scheme::from_name, scheme_names())
+}
+
+fn schemes() -> ValueParser {
+    let from_name = |name: &str| match name {
+        "all" => Some(Schemes(Scheme::ALL)),
+        name => Scheme::ALL.iter().position(|s| s.name() == name).map(|i| Schemes(&Scheme::ALL[i..=i])),
+    };
+    named(from_name, scheme_names().into_iter().chain([("all", "every one of these")]).collect())
+}
+
+fn ends() -> ValueParser {
+    let values = [
+        ("natural", "starts and stops without acceleration"),
+        ("clamped", "starts and stops at rest"),
+        ("repeat", "the end key counts twice"),
+        ("closed", "the last key runs into the first"),
+        ("periodic", "another word for closed"),
+        ("hold", "each end segment rests at its first key, then jumps"),
+    ];
+    named(Ends::from_name, values.to_vec())
+}
+
+fn degrees(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "expected an angle in degrees".to_owned())?;
+    if value >= 0.0 { Ok(value) } else { Err("expected an angle of 0 degrees or more".to_owned()) }
+}
+
+#[cfg(feature = "render")]
+fn size(text: &str) -> Result<(u32, u32), String> {
+    use dat2glb::render::MOST_PIXELS;
+    let side = |text: &str| text.parse().ok().filter(|n| (1..=MOST_PIXELS).contains(n));
+    let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some((side(w)?, side(h)?)));
+    sides.ok_or_else(|| format!("expected width and height, 1 to {MOST_PIXELS} pixels each, such as 512x512"))
+}
+
+#[cfg(feature = "render")]
+fn time(text: &str) -> Result<dat2glb::render::Time, String> {
+    use dat2glb::render::Time;
+    let number = |text: &str| text.parse().ok().filter(|x: &f64| x.is_finite() && *x >= 0.0);
+    let time = match text.strip_suffix('%') {
+        Some(percent) => number(percent).map(|percent| Time::Fraction(percent / 100.0)),
+        None => number(text.strip_suffix('s').unwrap_or(text)).map(Time::Seconds),
+    };
+    time.ok_or_else(|| "expected seconds, such as 2.5, or a share of the clip, such as 50%".to_owned())
+}
+
+/// `dat2glb IN.dat [OUT.glb] …` as `dat2glb convert IN.dat [-o OUT.glb] …`.
+///
+/// A first word that is no command counts as a file where it looks like one; anything
+/// else is left for the parser to wonder about.
+pub(crate) fn with_convert_spelled_out(mut arguments: Vec<OsString>) -> Vec<OsString> {
+    let is_command = |word: &OsStr| {
+        let commands = ["convert", "check", "thumbnail", "inspect", "example", "completions", "man", "help"];
+        commands.iter().any(|command| word == *command)
+    };
+    let looks_like_a_file = |word: &OsStr| {
+        let path = Path::new(word);
+        word == "-" || (path.extension().is_some() || path.components().count() > 1 || path.exists())
+    };
+    let first = &arguments[1];
+    let is_flag = |word: &OsStr| word != "-" && word.as_encoded_bytes().starts_with(b"-");
+    if is_command(first) || is_flag(first) || !looks_like_a_file(first) {
+        return arguments;
+    }
+    let is_output = |word: &OsStr| {
+        let ending = Path::new(word).extension().map(OsStr::to_ascii_lowercase);
+        word == "-" || ending.is_some_and(|ending| ending == "glb" || ending == "gltf")
+    };
+    if arguments.get(2).is_some_and(|word| is_output(word)) {
+        arguments.insert(2, "-o".into());
+    }
+    arguments.insert(1, "convert".into());
+    arguments
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    fn parsed(line: &str) -> Result<Cli, clap::Error> {
+        Cli::try_parse_from(with_convert_spelled_out(line.split(' ').map(OsString::from).collect()))
+    }
+
+    fn convert(line: &str) -> Convert {
+        match parsed(line).unwrap().command {
+            Command::Convert(convert) => convert,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn definitions_are_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn convert_may_be_left_out() {
+        let short = convert("dat2glb in.dat out.glb --fps 30");
+        assert_eq!((short.inputs, short.output), (vec!["in.dat".into()], Some("out.glb".into())));
+        assert_eq!(convert("dat2glb a.dat b.dat").inputs.len(), 2);
+        assert_eq!(convert("dat2glb - -").output, Some("-".into()));
+        assert!(parsed("dat2glb chek").is_err());
+    }
+
+    #[test]
+    fn schemes_are_lists() {
+        let schemes = |list: &str| convert(&format!("dat2glb a.dat --scheme {list}")).schemes();
+        assert_eq!(schemes("squad,slerp,squad"), [Scheme::Squad, Scheme::Slerp]);
+        assert_eq!(schemes("all"), Scheme::ALL);
+        assert_eq!(schemes("bessel,all")[0], Scheme::Bessel);
+        assert_eq!(convert("dat2glb a.dat --ends periodic").ends, Ends::Closed);
+        assert!(parsed("dat2glb a.dat --scheme spline").is_err());
+    }
+
+    #[cfg(feature = "render")]
+    #[test]
+    fn sizes_and_times() {
+        use dat2glb::render::Time;
+        assert_eq!(size("640x480"), Ok((640, 480)));
+        assert!(["640", "0x5", "5x99999", "x"].into_iter().all(|text| size(text).is_err()));
+        assert_eq!(time("2.5"), Ok(Time::Seconds(2.5)));
+        assert_eq!(time("50%"), Ok(Time::Fraction(0.5)));
+        assert!(["", "x", "nan", "-1", "%"].into_iter().all(|text| time(text).is_err()));
+    }
+}

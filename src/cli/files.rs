@@ -1,0 +1,86 @@
+//! Opening what the command line names.
+
+use super::exit::Failure;
+use dat2glb::asset::{self, Asset, Resolve, Source};
+use dat2glb::read::{self, Keyframes, Order};
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Component, Path, PathBuf};
+
+/// An input's name in messages and in outputs: its file name, without folders that mean
+/// nothing elsewhere.
+pub(super) fn display_name(path: &Path) -> String {
+    if is_standard(path) { "<stdin>".to_owned() } else { path.display().to_string() }
+}
+
+/// Whether `-` stands for standard input or output.
+pub(super) fn is_standard(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Reads a keyframe file, or standard input.
+pub(super) fn keyframes(path: &Path, order: Option<Order>) -> Result<Keyframes, Failure> {
+    let input: Box<dyn Read + Send> = if is_standard(path) { Box::new(io::stdin()) } else { Box::new(open(path)?) };
+    read::keyframes(&display_name(path), input, order).map_err(|error| Failure::refused(error.to_string()))
+}
+
+/// Opens an input file.
+pub(super) fn open(path: &Path) -> Result<File, Failure> {
+    let refuse = |reason: String| Failure::refused(format!("{}: {reason}", path.display()));
+    let file = File::open(path).map_err(|error| {
+        refuse(match error.kind() {
+            io::ErrorKind::NotFound => "expected a file, found none of this name".to_owned(),
+            _ => format!("cannot be opened: {error}"),
+        })
+    })?;
+    match file.metadata() {
+        Ok(metadata) if metadata.is_dir() => Err(refuse("expected a file, found a directory".to_owned())),
+        _ => Ok(file),
+    }
+}
+
+/// Opens a glTF file.
+pub(super) fn asset(path: &Path) -> Result<Asset, Failure> {
+    asset_or_schema(path)?.map_err(|error| cannot_read(path, &error))
+}
+
+/// Opens a glTF file; JSON that breaks the schema is left to the caller.
+pub(super) fn asset_or_schema(path: &Path) -> Result<Result<Asset, asset::Error>, Failure> {
+    let opened = Asset::open(Box::new(open(path)?), Box::new(Beside::the(path)));
+    match opened {
+        Ok(_) | Err(asset::Error::Schema(_)) => Ok(opened),
+        Err(error) => Err(cannot_read(path, &error)),
+    }
+}
+
+pub(super) fn cannot_read(path: &Path, error: &asset::Error) -> Failure {
+    Failure::refused(format!("{}: {error}", path.display()))
+}
+
+/// Opens files beside or below a .gltf, and no others: a file from elsewhere must not
+/// make this program read what its author never saw.
+pub(super) struct Beside {
+    folder: PathBuf,
+}
+
+impl Beside {
+    pub(super) fn the(gltf: &Path) -> Beside {
+        Beside { folder: gltf.parent().unwrap_or(Path::new("")).to_owned() }
+    }
+}
+
+impl Resolve for Beside {
+    fn open(&self, uri: &str) -> io::Result<Box<dyn Source>> {
+        let path = Path::new(uri);
+        let below = path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+        if !below {
+            let reason = format!("`{uri}` does not lie beside or below the file that names it");
+            return Err(io::Error::new(io::ErrorKind::PermissionDenied, reason));
+        }
+        let file = File::open(self.folder.join(path))?;
+        if file.metadata()?.is_dir() {
+            return Err(io::Error::new(io::ErrorKind::IsADirectory, format!("`{uri}` is a directory")));
+        }
+        Ok(Box::new(file))
+    }
+}

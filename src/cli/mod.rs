@@ -1,0 +1,90 @@
+//! What the command line adds to the library: arguments, files, messages, exit codes.
+
+mod args;
+mod check;
+mod convert;
+mod example;
+mod exit;
+mod files;
+mod inspect;
+mod output;
+mod progress;
+mod summary;
+#[cfg(feature = "render")]
+mod thumbnail;
+
+use args::{Cli, Command};
+use clap::{CommandFactory, Parser};
+use exit::{Exit, Failure};
+use std::ffi::OsString;
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+/// Four commands to begin with, for whoever types none.
+const FIRST_STEPS: &str = "\
+dat2glb turns quaternion keyframes into glTF animations. To begin with:
+
+  dat2glb example chain > chain.dat              a small input to start from
+  dat2glb convert chain.dat -o chain.glb         make an animated .glb of it
+  dat2glb check chain.glb --against chain.dat    does it play as it should?
+  dat2glb --help                                 everything else
+";
+
+/// Runs the tool with the arguments of a command line, program name included.
+pub(crate) fn run(arguments: Vec<OsString>) -> ExitCode {
+    if arguments.len() < 2 {
+        return finish(say_first_steps());
+    }
+    let cli = match Cli::try_parse_from(args::with_convert_spelled_out(arguments)) {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Help and version are written to standard output and are no failure.
+            let shown = error.print();
+            let code = if error.use_stderr() { Exit::Usage } else { Exit::Done };
+            return finish(shown.map(|()| code).map_err(Failure::from));
+        }
+    };
+    finish(match cli.command {
+        Command::Convert(options) => convert::run(&options),
+        Command::Check(options) => check::run(&options),
+        #[cfg(feature = "render")]
+        Command::Thumbnail(options) => thumbnail::run(&options),
+        Command::Inspect(options) => inspect::run(&options),
+        Command::Example(options) => example::run(&options),
+        Command::Completions { shell } => completions(shell),
+        Command::Man => man(),
+    })
+}
+
+fn say_first_steps() -> Result<Exit, Failure> {
+    io::stderr().write_all(FIRST_STEPS.as_bytes())?;
+    Ok(Exit::Usage)
+}
+
+/// Prints what failed and turns the outcome into the exit code.
+fn finish(outcome: Result<Exit, Failure>) -> ExitCode {
+    let exit = outcome.unwrap_or_else(|failure| {
+        failure.print();
+        failure.exit
+    });
+    ExitCode::from(exit as u8)
+}
+
+fn completions(shell: clap_complete::Shell) -> Result<Exit, Failure> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "dat2glb", &mut script);
+    io::stdout().write_all(&script)?;
+    Ok(Exit::Done)
+}
+
+fn man() -> Result<Exit, Failure> {
+    let mut page = Vec::new();
+    let mut command = Cli::command();
+    command.build();
+    clap_mangen::Man::new(command.clone()).render(&mut page)?;
+    for subcommand in command.get_subcommands().filter(|c| c.get_name() != "help") {
+        clap_mangen::Man::new(subcommand.clone()).render(&mut page)?;
+    }
+    io::stdout().write_all(&page)?;
+    Ok(Exit::Done)
+}

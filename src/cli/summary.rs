@@ -1,0 +1,122 @@
+//! What is said of a conversion when it is done.
+
+use super::exit::{Failure, say};
+use super::files::is_standard;
+use dat2glb::clip::Warning;
+use dat2glb::convert::ClipFacts;
+use dat2glb::read::Keyframes;
+use serde::Serialize;
+use std::io::{self, Write};
+use std::path::Path;
+use std::time::Duration;
+
+/// Blender plays at this rate unless told otherwise, from frame 1.
+const BLENDER_FPS: f64 = 24.0;
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Summary<'a> {
+    schema: u32,
+    input: &'a str,
+    output: String,
+    keys: usize,
+    boxes: usize,
+    seconds: f64,
+    /// Rotations in all clips together.
+    samples: u64,
+    bytes: u64,
+    elapsed_seconds: f64,
+    blender_end_frame: u64,
+    clips: &'a [ClipFacts],
+    warnings: &'a [Warning],
+}
+
+impl<'a> Summary<'a> {
+    pub(super) fn new(
+        input: &'a str,
+        output: &Path,
+        keyframes: &Keyframes,
+        clips: &'a [ClipFacts],
+        bytes: u64,
+        warnings: &'a [Warning],
+        elapsed: Duration,
+    ) -> Summary<'a> {
+        let clip = &keyframes.clip;
+        let boxes = clip.tracks.len();
+        Summary {
+            schema: 1,
+            input,
+            output: output.display().to_string(),
+            keys: clip.times.len(),
+            boxes,
+            seconds: clip.duration(),
+            samples: clips.iter().map(|c| c.samples).sum::<u64>() * boxes as u64,
+            bytes,
+            elapsed_seconds: elapsed.as_secs_f64(),
+            blender_end_frame: (clip.duration() * BLENDER_FPS).ceil() as u64 + 1,
+            clips,
+            warnings,
+        }
+    }
+
+    /// Prints warnings and summary; `--json` prints JSON instead, on standard output
+    /// unless the .glb goes there.
+    pub(super) fn print(&self, json: bool, quiet: bool) -> Result<(), Failure> {
+        if json {
+            let line = serde_json::to_string(self).expect("plain data becomes JSON");
+            if is_standard(Path::new(&self.output)) {
+                say(&line);
+            } else {
+                writeln!(io::stdout(), "{line}")?;
+            }
+        } else if !quiet {
+            for Warning { code, message } in self.warnings {
+                say(&format!("warning: {}: {message} [{code}]", self.input));
+            }
+            say(&self.line());
+        }
+        Ok(())
+    }
+
+    fn line(&self) -> String {
+        let count = |n: usize, one: &str, many: &str| format!("{n} {}", if n == 1 { one } else { many });
+        let clips = match self.clips {
+            [clip] => format!("{} samples each", clip.samples),
+            clips => format!("{} clips, {} samples in all", clips.len(), self.samples),
+        };
+        let deviation = self.clips.iter().map(|clip| clip.deviation_degrees).fold(0.0, f64::max);
+        format!(
+            "{}: {}, {}, {} s, {clips}, {}, within {deviation}° of the curve, {:.3} s\n\
+             Blender: set the scene's end to frame {} at {BLENDER_FPS} fps",
+            self.output,
+            count(self.keys, "key", "keys"),
+            count(self.boxes, "box", "boxes"),
+            (self.seconds * 1e6).round() / 1e6,
+            size(self.bytes),
+            self.elapsed_seconds,
+            self.blender_end_frame
+        )
+    }
+}
+
+/// Bytes for people.
+pub(super) fn size(bytes: u64) -> String {
+    match bytes as f64 {
+        b if b < 1e3 => format!("{bytes} B"),
+        b if b < 1e6 => format!("{:.1} kB", b / 1e3),
+        b if b < 1e9 => format!("{:.1} MB", b / 1e6),
+        b => format!("{:.2} GB", b / 1e9),
+    }
+}
+
+/// A failed input among others, for those who read JSON.
+pub(super) fn print_failure(input: &Path, failure: &Failure) -> Result<(), Failure> {
+    let line = serde_json::json!({
+        "schema": 1,
+        "input": input.display().to_string(),
+        "error": failure.message,
+        "exitCode": failure.exit as u8,
+    });
+    writeln!(io::stdout(), "{line}")?;
+    Ok(())
+}
