@@ -10,6 +10,7 @@ use super::scene::Scene;
 use super::{MOST_PIXELS, Picture, Renderer, Time, cpu};
 use crate::asset::Asset;
 use crate::asset::play::{Clip, Player};
+use glam::DVec3;
 
 /// Moments between a clip's ends at which it is looked at to find how far its
 /// motion reaches.
@@ -200,15 +201,6 @@ impl Session {
         Ok(frame)
     }
 
-    /// The view that a single pose fills.
-    pub(super) fn close_up(&self, pose: &Pose, size: (u32, u32)) -> Result<Frame, Error> {
-        check(size)?;
-        let mut framing = Framing::new(size);
-        pose.corners(&self.model)
-            .for_each(|corner| framing.add(corner));
-        Ok(framing.frame())
-    }
-
     /// How long a clip is, seconds; 0 without a clip.
     pub(super) fn duration(&self, clip: Option<usize>) -> f64 {
         let duration = clip
@@ -227,6 +219,17 @@ fn moments(duration: f64) -> Vec<f64> {
             .collect(),
         false => vec![0.0],
     }
+}
+
+/// The view that points fill.
+pub(super) fn close_up(
+    points: impl IntoIterator<Item = DVec3>,
+    size: (u32, u32),
+) -> Result<Frame, Error> {
+    check(size)?;
+    let mut framing = Framing::new(size);
+    points.into_iter().for_each(|point| framing.add(point));
+    Ok(framing.frame())
 }
 
 fn gpu(model: &Model) -> Result<Canvas, Error> {

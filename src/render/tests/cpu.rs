@@ -142,7 +142,7 @@ fn what_passes_the_camera_is_cut_at_the_near_plane() {
         ..Material::default()
     });
     part.vertices.extend(
-        [[-1.0, -1.0, 4.0], [1.0, -1.0, 4.0], [0.0, -1.0, -4.0]].map(|position| Vertex {
+        [[-1.0, -0.2, 4.0], [1.0, -0.2, 4.0], [0.0, -0.2, -4.0]].map(|position| Vertex {
             position,
             normal: [0.0, 1.0, 0.0],
             colour: WHITE,
@@ -162,10 +162,11 @@ fn what_passes_the_camera_is_cut_at_the_near_plane() {
         .iter()
         .map(|row| row.iter().filter(|a| **a > 0).count())
         .collect();
-    // The floor's far edge is at y = −1/4, a quarter of half the height down.
-    assert!(rows[..20].iter().all(|n| *n == 0), "{rows:?}");
-    assert!(rows[20..].iter().all(|n| *n > 0), "{rows:?}");
-    assert!((8..=10).contains(&rows[20]) && rows[31] > 16, "{rows:?}");
+    // The far edge is at y = −0.2/4, the near plane meets it at y = −0.2/0.5:
+    // 16.8 and 22.4 pixels down.
+    let drawn: Vec<usize> = (0..32).filter(|y| rows[*y] > 0).collect();
+    assert_eq!(drawn, [16, 17, 18, 19, 20, 21, 22], "{rows:?}");
+    assert!((8..=10).contains(&rows[16]) && rows[22] == 32, "{rows:?}");
 }
 
 #[test]
