@@ -99,19 +99,34 @@ fn sampler(root: &Root, animation: &Animation, index: usize, place: &str, report
             ),
         );
     }
-    let used = animation
+    let mut paths = HashSet::new();
+    let channels = animation
         .channels
         .iter()
-        .find(|channel| channel.sampler.value() == index);
-    let Some(channel) = used else {
-        return;
-    };
-    let Checked::Valid(path) = channel.target.path else {
-        return;
-    };
-    values(output, path, place, report);
+        .filter(|channel| channel.sampler.value() == index);
+    for channel in channels {
+        let Checked::Valid(path) = channel.target.path else {
+            continue;
+        };
+        // As a rule a sampler has one channel; more may move other things.
+        if paths.insert(path as u8) {
+            let weights = targets_of(root, channel.target.node.value()) as u64;
+            values(output, path, place, report);
+            count(input, output, (interpolation, path, weights), place, report);
+        }
+    }
+}
+
+/// There are as many values as keys, or with tangents three times as many.
+fn count(
+    input: &Accessor,
+    output: &Accessor,
+    (interpolation, path, weights): (Interpolation, Property, u64),
+    place: &str,
+    report: &mut Report,
+) {
     let per_key = match path {
-        Property::MorphTargetWeights => targets_of(root, channel.target.node.value()) as u64,
+        Property::MorphTargetWeights => weights,
         _ => 1,
     };
     let per_key = per_key

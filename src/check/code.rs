@@ -77,6 +77,7 @@ catalogue! {
     BufferTooShort "BUFFER_TOO_SHORT" Error "A buffer has fewer bytes than its byteLength says."
     ViewBounds "VIEW_BOUNDS" Error "A buffer view reaches past the end of its buffer."
     ViewStride "VIEW_STRIDE" Error "A byteStride is not a multiple of 4 from 4 to 252, or smaller than an element."
+    ViewUses "VIEW_USES" Error "A buffer view holds data of several kinds, of vertices, indices, images or other."
     AccessorBounds "ACCESSOR_BOUNDS" Error "An accessor reaches past the end of its buffer view."
     AccessorAlignment "ACCESSOR_ALIGNMENT" Error "An accessor does not begin at a multiple of its component's size."
     SparseIndices "SPARSE_INDICES" Error "The indices of sparse elements do not rise, or exceed the accessor."

@@ -9,7 +9,7 @@ use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::validation::Checked;
 use rayon::prelude::*;
 
-use super::{Code, Report, Severity, rotations, times, values};
+use super::{Code, Report, Severity, buffers, rotations, times, values};
 use crate::asset::play::{Block, Channel, Keys, Property};
 use crate::asset::{Asset, Error};
 
@@ -150,13 +150,24 @@ fn jobs(asset: &mut Asset) -> Vec<Job> {
             }
         }
     }
-    jobs.extend(
-        (0..asset.root().accessors.len()).map(|accessor| Job::Values {
-            accessor,
-            finite: !looked_at.contains(&accessor),
-        }),
-    );
+    let stored = (0..asset.root().accessors.len()).filter(|&accessor| is_stored(asset, accessor));
+    jobs.extend(stored.map(|accessor| Job::Values {
+        accessor,
+        finite: !looked_at.contains(&accessor),
+    }));
     jobs
+}
+
+/// Whether the numbers of an accessor are in the file as such: extensions
+/// that compress may leave its buffer view or its buffer out.
+fn is_stored(asset: &Asset, accessor: usize) -> bool {
+    let root = asset.root();
+    let stored = &root.accessors[accessor];
+    match stored.buffer_view.and_then(|view| root.get(view)) {
+        Some(view) if view.buffer.value() == 0 => true,
+        Some(view) => !buffers::filled_by_extension(root, view.buffer.value()),
+        None => stored.sparse.is_some() || root.extensions_used.is_empty(),
+    }
 }
 
 /// Samplers of an animation and their accessors of times, where these are of

@@ -1,10 +1,10 @@
 //! Judges a glTF file as its users' viewers would see it.
 //!
-//! [`file`] looks at any `.glb` or `.gltf`, layer by layer: the container,
+//! [`file()`] looks at any `.glb` or `.gltf`, layer by layer: the container,
 //! the JSON's structure, buffers and accessors, nodes, meshes, animations,
 //! and then, in one pass over the binary data, the numbers themselves. It
 //! gathers all findings; each has a stable [`Code`] that says how serious it
-//! is. Nothing here knows how [`crate::write`] makes files.
+//! is. Nothing here knows how [`crate::write`](mod@crate::write) makes files.
 
 pub mod against;
 mod animations;
@@ -22,6 +22,7 @@ mod tally;
 mod tests;
 mod times;
 mod unused;
+mod uses;
 mod values;
 
 pub use code::{Code, Severity};
@@ -52,7 +53,7 @@ pub fn asset(asset: &mut Asset) -> Report {
     container::check(asset, &mut report);
     structure::check(asset.root(), asset.json(), &mut report);
     buffers::check(asset, &mut report);
-    buffers::sampler_strides(asset, &mut report);
+    uses::check(asset.root(), &mut report);
     nodes::check(asset.root(), &mut report);
     meshes::check(asset, &mut report);
     animations::check(asset.root(), &mut report);

@@ -14,14 +14,14 @@ pub(super) fn check(root: &Root, json: &[u8], report: &mut Report) {
     validate(root, report);
     channels(root, report);
     if let Ok(value) = serde_json::from_slice(json) {
-        wrapped_indices(&value, report);
+        odd_values(&value, report);
     }
 }
 
 fn version(root: &Root, report: &mut Report) {
     let version = &root.asset.version;
-    let major = version.split('.').next();
-    if major != Some("2") {
+    let minor = version.strip_prefix("2.").unwrap_or_default();
+    if minor.is_empty() || !minor.bytes().all(|byte| byte.is_ascii_digit()) {
         report.add(
             Code::Version,
             "/asset/version",
@@ -195,9 +195,10 @@ fn escaped(name: &str) -> String {
     name.replace('~', "~0").replace('/', "~1")
 }
 
-/// `gltf-json` keeps the low 32 bits of an index, so that 4294967296 would
-/// pass for 0: such numbers are looked for in the JSON itself.
-fn wrapped_indices(json: &Value, report: &mut Report) {
+/// Values that `gltf-json` takes for something else, looked for in the JSON
+/// itself: of an index it keeps the low 32 bits, so that 4294967296 would pass
+/// for 0; null it takes for a missing value.
+fn odd_values(json: &Value, report: &mut Report) {
     let mut open = vec![(String::new(), json, false)];
     while let Some((pointer, value, index)) = open.pop() {
         match value {
@@ -214,7 +215,7 @@ fn wrapped_indices(json: &Value, report: &mut Report) {
                 let items = array
                     .iter()
                     .enumerate()
-                    .filter(|(_, item)| may_hold_index(item));
+                    .filter(|(_, item)| may_be_odd(item));
                 open.extend(items.map(|(i, item)| (format!("{pointer}/{i}"), item, index)));
             }
             Value::Number(number)
@@ -223,6 +224,11 @@ fn wrapped_indices(json: &Value, report: &mut Report) {
                 let message = format!("is {number}, more than any file has objects; correct it");
                 report.add(Code::IndexOutOfRange, pointer, message);
             }
+            Value::Null => report.add(
+                Code::InvalidValue,
+                pointer,
+                "is null, which glTF does not know; leave the property out",
+            ),
             _ => {}
         }
     }
@@ -263,10 +269,10 @@ fn is_foreign(key: &str) -> bool {
     matches!(key, "extras" | "extensions")
 }
 
-fn may_hold_index(item: &Value) -> bool {
+fn may_be_odd(item: &Value) -> bool {
     match item {
         Value::Number(number) => number.as_u64().is_some_and(|n| n > u64::from(u32::MAX)),
-        other => other.is_object() || other.is_array(),
+        other => other.is_object() || other.is_array() || other.is_null(),
     }
 }
 

@@ -296,6 +296,12 @@ fn values_that_gltf_does_not_know() {
             json["meshes"][0]["primitives"][0]["mode"] = json!(7);
         },
     );
+    expect(&[("INVALID_VALUE", "/nodes/1/camera")], |json, _| {
+        json["nodes"][1]["camera"] = Value::Null
+    });
+    expect(&[("VERSION", "/asset/version")], |json, _| {
+        json["asset"]["version"] = json!("2")
+    });
     expect(&[("MISSING_VALUE", "/cameras/0")], |json, _| {
         json["cameras"] = json!([{"type": "perspective"}]);
         json["nodes"][0]["camera"] = json!(0);
@@ -346,6 +352,14 @@ fn buffers_and_views() {
 }
 
 #[test]
+fn views_hold_one_kind_of_data() {
+    let unused = ("UNUSED_OBJECT", "/bufferViews/3");
+    expect(&[("VIEW_USES", "/bufferViews/2"), unused], |json, _| {
+        json["accessors"][3]["bufferView"] = json!(2);
+    });
+}
+
+#[test]
 fn accessors() {
     expect(&[("ACCESSOR_BOUNDS", "/accessors/2")], |json, _| {
         json["accessors"][2]["byteOffset"] = json!(4);
@@ -383,6 +397,28 @@ fn accessors() {
         &[("SPARSE_INDICES", "/accessors/3/sparse/indices")],
         sparse(3),
     );
+}
+
+#[test]
+fn data_that_extensions_hold_is_not_missed() {
+    let compressed = |extension: &'static str| {
+        move |json: &mut Value, _: &mut Vec<u8>| {
+            json["extensionsUsed"] = json!([extension]);
+            json["buffers"]
+                .as_array_mut()
+                .unwrap()
+                .push(json!({"byteLength": 36}));
+            json["bufferViews"][2] = json!({"buffer": 1, "byteLength": 36});
+        }
+    };
+    expect(&[], compressed("EXT_meshopt_compression"));
+    expect(&[], |json, _| {
+        json["extensionsUsed"] = json!(["KHR_draco_mesh_compression"]);
+        json["accessors"][2]
+            .as_object_mut()
+            .unwrap()
+            .remove("bufferView");
+    });
 }
 
 #[test]
@@ -433,12 +469,9 @@ fn vertices() {
         },
     );
     expect(
-        &[
-            ("ATTRIBUTE_TYPE", "/meshes/0/primitives/0/indices"),
-            ("UNUSED_OBJECT", "/accessors/4"),
-        ],
+        &[("ATTRIBUTE_TYPE", "/meshes/0/primitives/0/indices")],
         |json, _| {
-            json["meshes"][0]["primitives"][0]["indices"] = json!(0);
+            json["accessors"][4]["normalized"] = json!(true);
         },
     );
     expect(
@@ -447,20 +480,15 @@ fn vertices() {
             "/meshes/0/primitives/0/attributes/NORMAL",
         )],
         |json, _| {
-            let mut fewer = json["accessors"][3].clone();
-            fewer["count"] = json!(2);
+            let fewer = json!({"count": 2, "max": [1, 0, 0]});
+            let fewer = with(json["accessors"][2].clone(), fewer);
             json["accessors"].as_array_mut().unwrap().push(fewer);
-            json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = json!(5);
-            json["meshes"][0]["primitives"][0]
-                .as_object_mut()
-                .unwrap()
-                .remove("indices");
-            json["accessors"][4]["type"] = json!("SCALAR");
-            json["meshes"]
-                .as_array_mut()
-                .unwrap()
-                .push(json!({"primitives": [{"attributes": {"POSITION": 2}, "indices": 4}]}));
-            json["nodes"][0]["mesh"] = json!(1);
+            let primitive = &mut json["meshes"][0]["primitives"][0];
+            primitive["attributes"]["NORMAL"] = json!(4);
+            // Its indices name the third vertex.
+            primitive.as_object_mut().unwrap().remove("indices");
+            json["accessors"].as_array_mut().unwrap().remove(4);
+            json["bufferViews"].as_array_mut().unwrap().remove(4);
         },
     );
     expect(
@@ -646,6 +674,17 @@ fn types_and_counts_of_samplers() {
         |json, _| {
             json["bufferViews"][1]["byteStride"] = json!(16);
         },
+    );
+}
+
+#[test]
+fn a_sampler_must_suit_all_its_channels() {
+    expect(
+        &[
+            ("OUTPUT_TYPE", "/animations/0/samplers/0/output"),
+            ("UNUSED_OBJECT", "/animations/0/samplers/1"),
+        ],
+        |json, _| json["animations"][0]["channels"][1]["sampler"] = json!(0),
     );
 }
 
