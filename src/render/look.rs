@@ -3,7 +3,7 @@
 
 use super::error::Error;
 use super::layer::covered;
-use super::session::Session;
+use super::session::{Session, close_up};
 use crate::asset::play::{Channel, Keys, Property};
 use crate::asset::{self, Asset};
 
@@ -69,13 +69,19 @@ impl Session {
         })
     }
 
-    /// Seen from where the pose alone fills the view: in a view that holds a
-    /// wide motion, even a sound file may be small.
+    /// Seen from where the pose alone fills the view, as in a view that holds a
+    /// wide motion even a sound file may be small; and, if that is too far to
+    /// see a long thin thing, from where its largest part does.
     fn covered_close_up(&mut self, asset: &mut Asset, size: (u32, u32)) -> Result<f64, Error> {
         let clip = self.clip(None)?;
         let pose = self.pose(asset, clip, self.duration(clip) * 0.5)?;
-        let frame = self.close_up(&pose, size)?;
-        Ok(covered(&self.draw(&pose, &frame, size)?))
+        let frame = close_up(pose.corners(&self.model), size)?;
+        let share = covered(&self.draw(&pose, &frame, size)?);
+        let Some(corners) = pose.largest(&self.model).filter(|_| share < LEAST_VISIBLE) else {
+            return Ok(share);
+        };
+        let closer = close_up(corners, size)?;
+        Ok(share.max(covered(&self.draw(&pose, &closer, size)?)))
     }
 
     fn moves(

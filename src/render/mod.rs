@@ -25,12 +25,14 @@ mod shade;
 #[cfg(test)]
 mod tests;
 mod texture;
+mod time;
 mod triangle;
 
 pub use error::Error;
 pub use layer::Background;
 pub use look::{ClipLook, LEAST_VISIBLE, Look};
 pub use session::Session;
+pub use time::Time;
 
 use crate::asset::Asset;
 use image::RgbaImage;
@@ -50,15 +52,6 @@ pub enum Renderer {
     Wgpu,
     /// The built-in software renderer, which draws the same on every machine.
     Cpu,
-}
-
-/// A time of a clip.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Time {
-    /// From the clip's time 0.
-    Seconds(f64),
-    /// From 0, the clip's time 0, to 1, its last key.
-    Fraction(f64),
 }
 
 /// What picture to make; the default is half way through the first clip.

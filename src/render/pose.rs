@@ -136,13 +136,25 @@ impl Pose {
 
     /// The corners of the boxes around all parts, in the world.
     pub(crate) fn corners<'a>(&'a self, model: &'a Model) -> impl Iterator<Item = DVec3> + 'a {
+        self.boxes(model).flatten()
+    }
+
+    /// The corners of the largest box around a part.
+    pub(crate) fn largest(&self, model: &Model) -> Option<[DVec3; 8]> {
+        // The first and the last corner lie opposite each other.
+        let size = |corners: &[DVec3; 8]| corners[0].distance(corners[7]);
+        self.boxes(model)
+            .filter(|corners| size(corners).is_finite())
+            .max_by(|a, b| size(a).total_cmp(&size(b)))
+    }
+
+    fn boxes<'a>(&'a self, model: &'a Model) -> impl Iterator<Item = [DVec3; 8]> + 'a {
         let drawn = |part: &usize| !model.parts[*part].indices.is_empty();
         self.placed(model)
             .filter(move |(part, _)| drawn(part))
-            .flat_map(|(part, world)| {
-                model.parts[part]
-                    .corners()
-                    .map(|corner| world.transform_point3(corner))
+            .map(|(part, world)| {
+                let corners = model.parts[part].corners();
+                corners.map(|corner| world.transform_point3(corner))
             })
     }
 }

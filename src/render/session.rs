@@ -10,6 +10,7 @@ use super::scene::Scene;
 use super::{MOST_PIXELS, Picture, Renderer, Time, cpu};
 use crate::asset::Asset;
 use crate::asset::play::{Clip, Player};
+use glam::DVec3;
 
 /// Moments between a clip's ends at which it is looked at to find how far its
 /// motion reaches.
@@ -200,15 +201,6 @@ impl Session {
         Ok(frame)
     }
 
-    /// The view that a single pose fills.
-    pub(super) fn close_up(&self, pose: &Pose, size: (u32, u32)) -> Result<Frame, Error> {
-        check(size)?;
-        let mut framing = Framing::new(size);
-        pose.corners(&self.model)
-            .for_each(|corner| framing.add(corner));
-        Ok(framing.frame())
-    }
-
     /// How long a clip is, seconds; 0 without a clip.
     pub(super) fn duration(&self, clip: Option<usize>) -> f64 {
         let duration = clip
@@ -227,6 +219,17 @@ fn moments(duration: f64) -> Vec<f64> {
             .collect(),
         false => vec![0.0],
     }
+}
+
+/// The view that points fill.
+pub(super) fn close_up(
+    points: impl IntoIterator<Item = DVec3>,
+    size: (u32, u32),
+) -> Result<Frame, Error> {
+    check(size)?;
+    let mut framing = Framing::new(size);
+    points.into_iter().for_each(|point| framing.add(point));
+    Ok(framing.frame())
 }
 
 fn gpu(model: &Model) -> Result<Canvas, Error> {
@@ -254,52 +257,5 @@ fn check((width, height): (u32, u32)) -> Result<(), Error> {
     match fits(width) && fits(height) {
         true => Ok(()),
         false => Err(Error::Size(width, height)),
-    }
-}
-
-impl Time {
-    /// Seconds within a clip, and a note when they had to be brought there.
-    fn within(self, duration: f64) -> (f64, Option<String>) {
-        let (t, asked) = match self {
-            Time::Seconds(t) => (t, format!("{t} s")),
-            Time::Fraction(share) => (share * duration, format!("{} %", share * 100.0)),
-        };
-        if t >= 0.0 && t <= duration {
-            return (t, None);
-        }
-        // Also where `t` is no number.
-        let past = t > duration;
-        let (at, side, end) = match past {
-            true => (duration, "after the clip's end", "end"),
-            false => (0.0, "before the clip's start", "start"),
-        };
-        let note = format!("{asked} is {side} (it lasts {duration} s): drew its {end}");
-        (at, Some(note))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn times_beyond_a_clip_are_clamped_and_said() {
-        for (time, expected, said) in [
-            (Time::Seconds(1.5), 1.5, ""),
-            (
-                Time::Seconds(9.0),
-                2.0,
-                "9 s is after the clip's end (it lasts 2 s): drew its end",
-            ),
-            (Time::Seconds(-1.0), 0.0, "-1 s is before the clip's start"),
-            (Time::Fraction(0.25), 0.5, ""),
-            (Time::Fraction(1.5), 2.0, "150 % is after"),
-            (Time::Seconds(f64::NAN), 0.0, "NaN s is before"),
-        ] {
-            let (t, note) = time.within(2.0);
-            assert_eq!(t, expected);
-            assert!(note.as_deref().unwrap_or("").starts_with(said), "{note:?}");
-            assert_eq!(note.is_some(), !said.is_empty());
-        }
     }
 }

@@ -88,3 +88,16 @@ fn one_adapter_draws_many_poses() {
     assert!(gpu.draw(&turned.scene((64, 64))).unwrap() != first);
     assert!(gpu.draw(&stage.scene((64, 64))).unwrap() == first);
 }
+
+#[test]
+fn what_the_adapter_refuses_is_an_error_and_no_panic() {
+    let stage = chain(2, 1.0);
+    let Some(mut gpu) = gpu(&stage) else {
+        return;
+    };
+    let mut scene = stage.scene((8, 8));
+    scene.size = (0, 8);
+    assert!(matches!(gpu.draw(&scene), Err(Error::Adapter { .. })));
+    scene.size = (8, 8);
+    assert!(gpu.draw(&scene).is_ok(), "the adapter serves on");
+}

@@ -409,6 +409,28 @@ fn a_look_tells_what_moves() {
 }
 
 #[test]
+fn a_look_sees_what_is_long_and_thin_but_not_what_is_clear() {
+    let mut file = plain_house();
+    let far = |i: i32| json!({"mesh": 0, "translation": [i * 2000, i * 1500, 0]});
+    file.json["nodes"] = (0..3).map(far).collect();
+    assert!(file.picture().covered < LEAST_VISIBLE);
+    let seen = |file: &File| {
+        look(&mut file.asset(), SIZE, Renderer::Cpu)
+            .unwrap()
+            .visible()
+    };
+    assert!(seen(&file));
+
+    let pbr = json!({"baseColorFactor": [1, 1, 1, 0]});
+    file.push(
+        "materials",
+        json!({"alphaMode": "BLEND", "pbrMetallicRoughness": pbr}),
+    );
+    file.json["meshes"][0]["primitives"][0]["material"] = json!(0);
+    assert!(!seen(&file));
+}
+
+#[test]
 fn sizes_out_of_range_are_errors() {
     let file = plain_house();
     for size in [(0, 9), (9, 0), (MOST_PIXELS + 1, 9), (9, u32::MAX)] {

@@ -148,7 +148,28 @@ fn balls() -> Stage {
 
 /// A tiled texture of soft squares, on balls.
 fn textured() -> Stage {
-    let mut stage = balls();
+    with_squares(balls())
+}
+
+/// The same on boxes with smooth normals, one of them mirrored.
+fn textured_boxes() -> Stage {
+    let mut part = box_part(2.0);
+    for vertex in &mut part.vertices {
+        vertex.normal = vertex.position;
+        vertex.uv = vertex.uv.map(|c| c * 3.0);
+    }
+    let at = |x: f64, side: f64| {
+        DMat4::from_translation(DVec3::new(x, 0.0, 0.0))
+            * DMat4::from_scale(DVec3::new(side, 1.0, 1.0))
+    };
+    with_squares(Stage {
+        parts: vec![part],
+        placed: vec![(0, at(-1.5, 1.0)), (0, at(0.0, -1.0))],
+        ..Stage::default()
+    })
+}
+
+fn with_squares(mut stage: Stage) -> Stage {
     let pixel = |x: u32, y: u32| match (x / 8 + y / 8) % 2 {
         0 => [230, (x * 8) as u8, 40, 255],
         _ => [30, 90, (y * 8) as u8, 255],
@@ -204,6 +225,7 @@ pub(super) fn stages() -> Vec<(&'static str, Stage)> {
         ("long chain", chain(16, 1.2)),
         ("balls", balls()),
         ("textured", textured()),
+        ("textured boxes", textured_boxes()),
         ("glass", glass()),
         ("nothing", Stage::default()),
     ]
