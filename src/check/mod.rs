@@ -13,6 +13,7 @@ mod code;
 mod container;
 mod data;
 mod meshes;
+pub mod motion;
 mod nodes;
 mod report;
 mod rotations;

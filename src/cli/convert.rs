@@ -52,7 +52,9 @@ fn jobs(options: &Convert) -> Result<Vec<Job>, Failure> {
             Some(folder) if several || is_folder(folder) => in_folder(folder, input, "glb", several)?,
             Some(output) => output.clone(),
             None if is_standard(input) => {
-                return Err(Failure::usage("standard input has no name for the output to take: say -o OUT.glb"));
+                return Err(Failure::usage(
+                    "standard input has no name for the output to take: say -o OUT.glb",
+                ));
             }
             None => input.with_extension("glb"),
         };
@@ -79,11 +81,15 @@ fn in_folder(folder: &Path, input: &Path, ending: &str, make: bool) -> Result<Pa
         return Err(Failure::usage("several inputs do not fit into standard output: say -o FOLDER"));
     }
     if (make || is_folder(folder)) && !folder.exists() {
-        fs::create_dir_all(folder)
-            .map_err(|error| Failure::environment(format!("{}: cannot be made: {error}", folder.display())))?;
+        fs::create_dir_all(folder).map_err(|error| {
+            Failure::environment(format!("{}: cannot be made: {error}", folder.display()))
+        })?;
     }
     if !folder.is_dir() {
-        return Err(Failure::usage(format!("{}: expected a folder for several inputs, found a file", folder.display())));
+        return Err(Failure::usage(format!(
+            "{}: expected a folder for several inputs, found a file",
+            folder.display()
+        )));
     }
     Ok(folder.join(Path::new(&stem(input)).with_added_extension(ending)))
 }
@@ -127,7 +133,8 @@ fn convert(job: &Job, options: &Convert) -> Result<(), Failure> {
         key_times: !options.no_key_times,
     };
     let plan = Plan::new(&keyframes, &name, &recipe).map_err(|error| Failure::refused(error.to_string()))?;
-    let mut written = if is_gltf(&job.output) { gltf(job, &plan, options)? } else { glb(job, &plan, options)? };
+    let mut written =
+        if is_gltf(&job.output) { gltf(job, &plan, options)? } else { glb(job, &plan, options)? };
     let thumbnail = draw(job, options, &mut written)?;
     let Written { outputs, facts, bytes, bin_name, .. } = written;
     let mut warnings = plan.warnings().to_vec();
@@ -222,7 +229,10 @@ fn writing(job: &Job, error: io::Error) -> Failure {
 fn checked(job: &Job, main: Box<dyn Source>, resolve: Box<dyn Resolve>) -> Result<Asset, Failure> {
     let output = job.output.display().to_string();
     let broken = |report: String| {
-        Failure::new(Exit::Failed, format!("{output}: the output failed its check and was not kept\n{report}"))
+        Failure::new(
+            Exit::Failed,
+            format!("{output}: the output failed its check and was not kept\n{report}"),
+        )
     };
     let mut asset = Asset::open(main, resolve).map_err(|error| broken(error.to_string()))?;
     let report: Report = check::asset(&mut asset);
@@ -249,7 +259,10 @@ fn draw(job: &Job, options: &Convert, written: &mut Written) -> Result<Option<Ou
     let output = Output::create(path, std::slice::from_ref(&job.input))?;
     let picture = super::thumbnail::draw(&mut written.asset, &Default::default(), &job.output)?;
     if picture.covered < dat2glb::render::LEAST_VISIBLE {
-        return Err(Failure::new(Exit::Failed, format!("{}: NOTHING_VISIBLE in its picture", job.output.display())));
+        return Err(Failure::new(
+            Exit::Failed,
+            format!("{}: NOTHING_VISIBLE in its picture", job.output.display()),
+        ));
     }
     if !options.quiet {
         picture.notes.iter().for_each(|note| say(note));

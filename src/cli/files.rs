@@ -20,7 +20,8 @@ pub(super) fn is_standard(path: &Path) -> bool {
 
 /// Reads a keyframe file, or standard input.
 pub(super) fn keyframes(path: &Path, order: Option<Order>) -> Result<Keyframes, Failure> {
-    let input: Box<dyn Read + Send> = if is_standard(path) { Box::new(io::stdin()) } else { Box::new(open(path)?) };
+    let input: Box<dyn Read + Send> =
+        if is_standard(path) { Box::new(io::stdin()) } else { Box::new(open(path)?) };
     read::keyframes(&display_name(path), input, order).map_err(|error| Failure::refused(error.to_string()))
 }
 

@@ -201,11 +201,14 @@ fn follow(path: &Path) -> io::Result<PathBuf> {
 }
 
 fn refuse_inputs(shown: &str, existing: &Metadata, path: &Path, inputs: &[PathBuf]) -> Result<(), Failure> {
-    let same = |input: &&PathBuf| fs::metadata(input).is_ok_and(|other| is_same(existing, path, &other, input));
+    let same =
+        |input: &&PathBuf| fs::metadata(input).is_ok_and(|other| is_same(existing, path, &other, input));
     match inputs.iter().find(same) {
         Some(input) => {
             let input = input.display();
-            Err(Failure::usage(format!("{shown}: expected an output that is no input, found the input {input}")))
+            Err(Failure::usage(format!(
+                "{shown}: expected an output that is no input, found the input {input}"
+            )))
         }
         None => Ok(()),
     }

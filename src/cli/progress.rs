@@ -12,7 +12,8 @@ pub(super) struct Progress {
 
 impl Progress {
     pub(super) fn new(total: u64, quiet: bool) -> Progress {
-        let style = ProgressStyle::with_template("{bar:40} {percent} % {eta} left").expect("a fixed template");
+        let style =
+            ProgressStyle::with_template("{bar:40} {percent} % {eta} left").expect("a fixed template");
         let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::hidden()).with_style(style);
         Progress { bar, started: Instant::now(), wanted: !quiet && std::io::stderr().is_terminal() }
     }

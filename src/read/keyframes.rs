@@ -19,6 +19,8 @@ pub struct Keyframes {
     pub order: Order,
     /// What a user should know.
     pub warnings: Vec<Warning>,
+    /// How far from 1 the length of the worst quaternion was.
+    pub largest_norm_error: f64,
     /// BLAKE3 hash of the file's bytes, in hexadecimal.
     pub hash: String,
     /// Bytes read.
@@ -53,9 +55,10 @@ pub fn keyframes(
             }
         }
     }
+    let largest_norm_error = reader.oddities.largest_norm_error();
     let (clip, order, warnings) = reader.finish()?;
     let hash = blocks.hasher.finalize().to_hex().to_string();
-    Ok(Keyframes { clip, order, warnings, hash, bytes: blocks.bytes })
+    Ok(Keyframes { clip, order, warnings, largest_norm_error, hash, bytes: blocks.bytes })
 }
 
 /// Why reading stopped.

@@ -63,12 +63,15 @@ impl Oddities {
     /// Looks at a quaternion's length.
     pub(super) fn measure(&mut self, norm: f64, line: usize, index: usize) {
         let off = (norm - 1.0).abs();
-        if off > NOT_UNIT {
-            self.not_unit += 1;
-            if self.worst.is_none_or(|worst| off > worst.0) {
-                self.worst = Some((off, norm, line, index));
-            }
+        self.not_unit += usize::from(off > NOT_UNIT);
+        if self.worst.is_none_or(|worst| off > worst.0) {
+            self.worst = Some((off, norm, line, index));
         }
+    }
+
+    /// How far from 1 the worst length is.
+    pub(super) fn largest_norm_error(&self) -> f64 {
+        self.worst.map_or(0.0, |worst| worst.0)
     }
 
     /// Moves line numbers from within a part to within the file.
@@ -99,7 +102,7 @@ impl Oddities {
     }
 
     fn not_unit_warning(&self) -> Option<Warning> {
-        let (_, norm, line, index) = self.worst?;
+        let (_, norm, line, index) = self.worst.filter(|worst| worst.0 > NOT_UNIT)?;
         let count = match self.not_unit {
             1 => "1 quaternion is".to_owned(),
             n => format!("{n} quaternions are"),

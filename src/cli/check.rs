@@ -1,0 +1,133 @@
+//! `dat2glb check`: files against the specification, their input, and the eye.
+
+use super::args::Check;
+use super::exit::{Exit, Failure};
+use super::files;
+use dat2glb::asset::{self, Asset};
+use dat2glb::check::motion::{self, ClipMotion, Given};
+use dat2glb::check::{self, Code, Report, Severity};
+use std::io::{self, Write};
+use std::path::Path;
+
+pub(super) fn run(options: &Check) -> Result<Exit, Failure> {
+    let mut worst = Exit::Done;
+    for file in &options.files {
+        match one(file, options) {
+            Ok(exit) => worst = worst.max(exit),
+            Err(failure) => {
+                failure.print();
+                if options.json {
+                    super::summary::print_failure(file, &failure)?;
+                }
+                worst = worst.max(failure.exit);
+            }
+        }
+    }
+    Ok(worst)
+}
+
+fn one(file: &Path, options: &Check) -> Result<Exit, Failure> {
+    let (report, motions) = match files::asset_or_schema(file)? {
+        Ok(mut asset) => {
+            let mut report = check::asset(&mut asset);
+            let motions = compare(&mut asset, file, options, &mut report)?;
+            look(&mut asset, file, options, &mut report)?;
+            (report, motions)
+        }
+        Err(asset::Error::Schema(problem)) => {
+            let mut report = Report::default();
+            report.add(Code::Schema, "", problem);
+            (report, Vec::new())
+        }
+        Err(error) => return Err(files::cannot_read(file, &error)),
+    };
+    if !options.quiet {
+        print(file, options, &report, &motions)?;
+    }
+    let limit = if options.strict { Severity::Warning } else { Severity::Error };
+    Ok(if report.worst() >= Some(limit) { Exit::Failed } else { Exit::Done })
+}
+
+fn compare(
+    asset: &mut Asset,
+    file: &Path,
+    options: &Check,
+    report: &mut Report,
+) -> Result<Vec<ClipMotion>, Failure> {
+    let Some(input) = &options.against else { return Ok(Vec::new()) };
+    let order = options.order.order.or(motion::quat_order(asset));
+    let keyframes = files::keyframes(input, order)?;
+    let given = Given { scheme: options.scheme, ends: options.ends, max_error: options.max_error };
+    motion::compare(asset, &keyframes, given, report).map_err(|error| {
+        let message = format!("{}: {error}", file.display());
+        match error {
+            motion::Error::NoRecipe => Failure::usage(message),
+            _ => Failure::refused(message),
+        }
+    })
+}
+
+#[cfg(feature = "render")]
+fn look(asset: &mut Asset, file: &Path, options: &Check, report: &mut Report) -> Result<(), Failure> {
+    use super::exit::say;
+    if !options.render {
+        return Ok(());
+    }
+    let look = dat2glb::render::look(asset, (256, 256), options.renderer.renderer)
+        .map_err(|error| super::thumbnail::failure(&error, file))?;
+    if !options.quiet {
+        look.notes.iter().for_each(|note| say(&format!("{}: {note}", file.display())));
+    }
+    if !look.visible() {
+        let message =
+            format!("{:.3} % of a picture's pixels are drawn, less than 0.1 %", 100.0 * look.covered);
+        report.add(Code::NothingVisible, "", message);
+    }
+    for clip in look.clips.iter().filter(|clip| clip.moves == Some(false)) {
+        let name = clip.name.as_deref().unwrap_or("without a name");
+        let message =
+            format!("clip {name}: the pictures at 0, 25, 50 and 75 % are the same, though channels change");
+        report.add(Code::NothingMoves, format!("/animations/{}", clip.animation), message);
+    }
+    Ok(())
+}
+
+#[cfg(not(feature = "render"))]
+fn look(_: &mut Asset, _: &Path, _: &Check, _: &mut Report) -> Result<(), Failure> {
+    Ok(())
+}
+
+fn print(file: &Path, options: &Check, report: &Report, motions: &[ClipMotion]) -> io::Result<()> {
+    let name = file.display().to_string();
+    let mut out = io::stdout().lock();
+    if options.json {
+        let mut value = report.to_json();
+        value["file"] = name.into();
+        if options.against.is_some() {
+            value["motion"] = serde_json::to_value(motions).expect("plain data becomes JSON");
+        }
+        return writeln!(out, "{value}");
+    }
+    for clip in motions {
+        writeln!(out, "{name}: clip {} against {} with {} ends:", clip.clip, clip.scheme, clip.ends)?;
+        for motion in &clip.boxes {
+            let limit = motion.limit.map_or(String::new(), |limit| format!(" (at most {limit:.6}° allowed)"));
+            let kinds = [
+                ("keys", motion.difference.keys),
+                ("samples", motion.difference.samples),
+                ("between", motion.difference.between),
+            ];
+            let angles: Vec<String> = kinds
+                .map(|(kind, largest)| format!("{kind} {:.2e}° at {:.3} s", largest.degrees, largest.time))
+                .into();
+            writeln!(out, "{name}:   {}: {}{limit}", motion.node, angles.join(", "))?;
+        }
+    }
+    write!(out, "{}", report.text(&name))?;
+    let count = |severity, one: &str| match report.count(severity) {
+        1 => format!("1 {one}"),
+        n => format!("{n} {one}s"),
+    };
+    let (errors, warnings) = (count(Severity::Error, "error"), count(Severity::Warning, "warning"));
+    writeln!(out, "{name}: {errors}, {warnings}, {}", count(Severity::Info, "info"))
+}
