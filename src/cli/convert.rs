@@ -186,7 +186,7 @@ fn gltf(job: &Job, plan: &Plan, options: &Convert) -> Result<Written, Failure> {
     // will do, for it is written aside.
     let inputs = std::slice::from_ref(&job.input);
     let mut bin = Output::create(&job.output.with_extension("bin"), inputs)?;
-    let mut main = begin(job)?;
+    let main = begin(job)?;
     let mut progress = Progress::new(plan.samples(), options.quiet);
     let buffered = BufWriter::with_capacity(WRITE_BUFFER, bin.file());
     let mut bin_name = String::new();
