@@ -91,7 +91,7 @@ fn in_folder(folder: &Path, input: &Path, ending: &str, make: bool) -> Result<Pa
             folder.display()
         )));
     }
-    Ok(folder.join(Path::new(&stem(input)).with_added_extension(ending)))
+    Ok(folder.join(format!("{}.{ending}", stem(input))))
 }
 
 /// A name without folders and ending: of the animations, and of outputs.
