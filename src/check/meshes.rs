@@ -19,6 +19,7 @@ pub(super) fn check(asset: &mut Asset, report: &mut Report) {
         for (p, primitive) in mesh.primitives.iter().enumerate() {
             let place = format!("/meshes/{m}/primitives/{p}");
             attributes(root, primitive, &place, report);
+            targets(root, primitive, &place, report);
             indices(root, primitive, &place, report);
             if let (Some(indices), Some(vertices)) = (primitive.indices, vertices(root, primitive))
             {
@@ -73,6 +74,30 @@ fn attributes(root: &Root, primitive: &Primitive, place: &str, report: &mut Repo
                 Code::AttributeCount,
                 place,
                 format!("has {} elements, and another attribute of the primitive {first}; they must agree", accessor.count.0),
+            );
+        }
+    }
+}
+
+/// Morph targets have as many elements as the attributes they move.
+fn targets(root: &Root, primitive: &Primitive, place: &str, report: &mut Report) {
+    let Some(vertices) = vertices(root, primitive) else {
+        return;
+    };
+    for (t, target) in primitive.targets.iter().flatten().enumerate() {
+        let accessors = [target.positions, target.normals, target.tangents];
+        let accessors = accessors
+            .into_iter()
+            .flatten()
+            .filter_map(|index| root.get(index));
+        for accessor in accessors.filter(|accessor| accessor.count.0 != vertices) {
+            report.add(
+                Code::AttributeCount,
+                format!("{place}/targets/{t}"),
+                format!(
+                    "has {} elements for {vertices} vertices; they must agree",
+                    accessor.count.0
+                ),
             );
         }
     }

@@ -1,5 +1,5 @@
-//! Nodes: a forest without cycles, transforms that mean one thing, names that
-//! tell nodes and clips apart.
+//! Nodes: a forest without cycles, transforms that mean one thing, cameras
+//! that see, names that tell nodes and clips apart.
 
 use std::collections::HashMap;
 
@@ -12,6 +12,7 @@ pub(super) fn check(root: &Root, report: &mut Report) {
     cycles(&parents, report);
     scene_roots(root, &parents, report);
     transforms(root, report);
+    cameras(root, report);
     let nodes = root.nodes.iter().map(|node| node.name.as_deref());
     names("nodes", nodes, report);
     let clips = root.animations.iter().map(|clip| clip.name.as_deref());
@@ -108,6 +109,21 @@ fn transforms(root: &Root, report: &mut Report) {
                     Code::NodeRotation,
                     place("rotation"),
                     format!("must be of length 1 and is of length {length:.6}; normalise it"),
+                );
+            }
+        }
+    }
+}
+
+fn cameras(root: &Root, report: &mut Report) {
+    for (c, camera) in root.cameras.iter().enumerate() {
+        if let Some(lens) = &camera.perspective {
+            let far = lens.zfar.is_none_or(|far| far > lens.znear);
+            if !(lens.yfov > 0.0 && lens.znear > 0.0 && far) {
+                report.add(
+                    Code::InvalidValue,
+                    format!("/cameras/{c}/perspective"),
+                    "yfov and znear must be above 0, and zfar beyond znear",
                 );
             }
         }

@@ -207,7 +207,7 @@ fn odd_values(json: &Value, report: &mut Report) {
                     let inside = matches!(key.as_str(), "attributes" | "targets");
                     let index = inside
                         || INDICES.contains(&key.as_str())
-                        || (index && pointer.contains("/attributes"));
+                        || (index && pointer.starts_with("/meshes"));
                     open.push((format!("{pointer}/{}", escaped(key)), value, index));
                 }
             }

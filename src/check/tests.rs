@@ -352,6 +352,32 @@ fn buffers_and_views() {
 }
 
 #[test]
+fn morph_targets_and_cameras() {
+    let target = |accessor: u64| {
+        move |json: &mut Value, _: &mut Vec<u8>| {
+            let mut fewer = json["accessors"][2].clone();
+            fewer["count"] = json!(2);
+            fewer["max"] = json!([1, 0, 0]);
+            json["accessors"].as_array_mut().unwrap().push(fewer);
+            json["meshes"][0]["primitives"][0]["targets"] =
+                json!([{"POSITION": 5}, {"POSITION": accessor}]);
+        }
+    };
+    let count = ("ATTRIBUTE_COUNT", "/meshes/0/primitives/0/targets/0");
+    expect(&[count], target(2));
+    let place = "/meshes/0/primitives/0/targets/1/POSITION";
+    expect(
+        &[("INDEX_OUT_OF_RANGE", place), count],
+        target((1 << 32) + 2),
+    );
+    expect(&[("INVALID_VALUE", "/cameras/0/perspective")], |json, _| {
+        json["cameras"] =
+            json!([{"type": "perspective", "perspective": {"yfov": 1, "znear": 2, "zfar": 1}}]);
+        json["nodes"][0]["camera"] = json!(0);
+    });
+}
+
+#[test]
 fn views_hold_one_kind_of_data() {
     let unused = ("UNUSED_OBJECT", "/bufferViews/3");
     expect(&[("VIEW_USES", "/bufferViews/2"), unused], |json, _| {
