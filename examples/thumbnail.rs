@@ -18,10 +18,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let file = BufReader::new(File::open(input)?);
     let mut asset = Asset::open(Box::new(file), Box::new(NoFiles))?;
-    let options = Options {
-        renderer,
-        ..Options::default()
-    };
+    let options = Options { renderer, ..Options::default() };
     let picture = thumbnail(&mut asset, &options)?;
     std::fs::write(output, picture.png())?;
     println!("{}", picture.renderer);

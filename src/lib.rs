@@ -3,8 +3,8 @@
 //! The modules stand in the order in which data flows through them:
 //! [`read`] turns the text of a `.dat` file into a [`clip`], [`curve`] runs a
 //! smooth motion through its keys, [`sample`] evaluates that motion at the
-//! times a viewer will play, [`write`] makes a glTF file of the samples,
-//! [`asset`] loads any glTF file back, [`check`] judges it and [`render`]
+//! times a viewer will play, [`mod@write`] makes a glTF file of the samples,
+//! [`asset`] loads any glTF file back, [`check`] judges it and `render`
 //! draws it.
 //!
 //! # Conventions

@@ -84,11 +84,7 @@ impl Layout {
             1 => column_size,
             _ => column_size.next_multiple_of(4),
         };
-        Layout {
-            columns,
-            column_size,
-            column_stride,
-        }
+        Layout { columns, column_size, column_stride }
     }
 
     /// Bytes from the first to the last that holds a number.
@@ -120,8 +116,7 @@ impl Asset {
         let wrong = |problem: &str| Error::data(pointer.clone(), problem);
         let stored = self.root.accessors.get(accessor);
         let stored = stored.ok_or_else(|| wrong("there is no such accessor"))?;
-        let (Checked::Valid(component), Checked::Valid(kind)) =
-            (&stored.component_type, &stored.type_)
+        let (Checked::Valid(component), Checked::Valid(kind)) = (&stored.component_type, &stored.type_)
         else {
             return Err(wrong("its type or componentType is not one of glTF's"));
         };
@@ -132,9 +127,7 @@ impl Asset {
         let elements = match view {
             Some(view) => Some(self.elements(&pointer, view.value(), offset, count, layout)?),
             None if count > ZEROS => {
-                return Err(wrong(
-                    "has no bufferView, and more elements than are filled with zeros here",
-                ));
+                return Err(wrong("has no bufferView, and more elements than are filled with zeros here"));
             }
             None => None,
         };
@@ -209,15 +202,9 @@ impl Asset {
         elements: Range<usize>,
         out: &mut Vec<u32>,
     ) -> Result<(), Error> {
-        let unsigned = matches!(
-            shape.component,
-            ComponentType::U8 | ComponentType::U16 | ComponentType::U32
-        );
+        let unsigned = matches!(shape.component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32);
         if !unsigned || shape.components != 1 {
-            return Err(Error::data(
-                shape.pointer.clone(),
-                "must hold single unsigned integers",
-            ));
+            return Err(Error::data(shape.pointer.clone(), "must hold single unsigned integers"));
         }
         let range = shape.checked(&elements)?;
         out.clear();
@@ -291,32 +278,16 @@ impl Asset {
         let stride = span.stride.filter(|&stride| stride > 0);
         let stride = stride.unwrap_or(layout.stride());
         if stride < layout.size() {
-            return Err(wrong(format!(
-                "its elements of {} bytes are only {stride} apart",
-                layout.size()
-            )));
+            return Err(wrong(format!("its elements of {} bytes are only {stride} apart", layout.size())));
         }
         let end = u128::from(offset) + layout.span(stride, count);
         if end > u128::from(span.length) {
-            return Err(wrong(format!(
-                "reaches to byte {end} of a buffer view that has {}",
-                span.length
-            )));
+            return Err(wrong(format!("reaches to byte {end} of a buffer view that has {}", span.length)));
         }
-        Ok(Elements {
-            buffer: span.buffer,
-            start: span.start + offset,
-            stride,
-            layout,
-        })
+        Ok(Elements { buffer: span.buffer, start: span.start + offset, stride, layout })
     }
 
-    fn sparse(
-        &mut self,
-        pointer: &str,
-        stored: &sparse::Sparse,
-        layout: Layout,
-    ) -> Result<Sparse, Error> {
+    fn sparse(&mut self, pointer: &str, stored: &sparse::Sparse, layout: Layout) -> Result<Sparse, Error> {
         let at = |part: &str| format!("{pointer}/sparse/{part}");
         let Checked::Valid(index_type) = &stored.indices.component_type else {
             let problem = "its componentType must be an unsigned integer";
@@ -417,10 +388,7 @@ impl Shape {
         }
         Err(Error::data(
             self.pointer.clone(),
-            format!(
-                "has {} elements, and {elements:?} were asked for",
-                self.count
-            ),
+            format!("has {} elements, and {elements:?} were asked for", self.count),
         ))
     }
 }
@@ -428,22 +396,14 @@ impl Shape {
 /// Appends numbers as section 3.11 of the specification converts them.
 fn push_floats(component: ComponentType, normalized: bool, bytes: &[u8], out: &mut Vec<f32>) {
     let signed = |value: f32, top: f32| {
-        if normalized {
-            (value / top).max(-1.0)
-        } else {
-            value
-        }
+        if normalized { (value / top).max(-1.0) } else { value }
     };
     let unsigned = |value: f32, top: f32| if normalized { value / top } else { value };
     let pairs = bytes.as_chunks().0.iter();
     let fours = bytes.as_chunks().0.iter();
     match component {
         ComponentType::F32 => out.extend(fours.map(|b| f32::from_le_bytes(*b))),
-        ComponentType::I8 => out.extend(
-            bytes
-                .iter()
-                .map(|&b| signed(f32::from(b.cast_signed()), 127.0)),
-        ),
+        ComponentType::I8 => out.extend(bytes.iter().map(|&b| signed(f32::from(b.cast_signed()), 127.0))),
         ComponentType::U8 => out.extend(bytes.iter().map(|&b| unsigned(f32::from(b), 255.0))),
         ComponentType::I16 => {
             out.extend(pairs.map(|b| signed(f32::from(i16::from_le_bytes(*b)), 32767.0)));

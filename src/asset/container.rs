@@ -69,11 +69,7 @@ impl Container {
         if length >= 4 {
             main.read_exact(&mut magic)?;
         }
-        if magic == MAGIC {
-            glb(main, length).map(Container::Glb)
-        } else {
-            text(main, length)
-        }
+        if magic == MAGIC { glb(main, length).map(Container::Glb) } else { text(main, length) }
     }
 
     /// The JSON text, without a byte-order mark and without zero bytes after
@@ -146,9 +142,7 @@ fn glb(main: &mut dyn Source, length: u64) -> Result<Glb, Error> {
     }
     let version = u32_from(main)?;
     if version != 2 {
-        return Err(Error::NotGltf(format!(
-            "its header must say version 2 and says {version}"
-        )));
+        return Err(Error::NotGltf(format!("its header must say version 2 and says {version}")));
     }
     let declared = u64::from(u32_from(main)?);
     let (mut chunks, mut at) = (Vec::new(), HEADER);
@@ -162,21 +156,11 @@ fn glb(main: &mut dyn Source, length: u64) -> Result<Glb, Error> {
             break;
         }
         let start = at + CHUNK_HEADER;
-        let chunk = Chunk {
-            kind,
-            start,
-            declared: claimed,
-            length: claimed.min(length - start),
-        };
+        let chunk = Chunk { kind, start, declared: claimed, length: claimed.min(length - start) };
         at = start + chunk.length;
         chunks.push(chunk);
     }
-    Ok(Glb {
-        length,
-        declared,
-        chunks,
-        end: at,
-    })
+    Ok(Glb { length, declared, chunks, end: at })
 }
 
 /// A `.gltf` must at least begin like a JSON object: nobody waits for a large
@@ -188,9 +172,9 @@ fn text(main: &mut dyn Source, length: u64) -> Result<Container, Error> {
     let head = head.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&head);
     match head.iter().find(|byte| !byte.is_ascii_whitespace()) {
         Some(b'{') => Ok(Container::Text { length }),
-        Some(_) => Err(Error::NotGltf(
-            "a .glb begins with `glTF`, a .gltf with `{`; this file does neither".into(),
-        )),
+        Some(_) => {
+            Err(Error::NotGltf("a .glb begins with `glTF`, a .gltf with `{`; this file does neither".into()))
+        }
         None => Err(Error::NotGltf("the file is empty".into())),
     }
 }

@@ -80,10 +80,7 @@ pub enum Error {
 impl Error {
     /// A problem with the part at `pointer`.
     pub(crate) fn data(pointer: impl Into<String>, problem: impl Into<String>) -> Self {
-        Error::Data {
-            pointer: pointer.into(),
-            problem: problem.into(),
-        }
+        Error::Data { pointer: pointer.into(), problem: problem.into() }
     }
 }
 
@@ -106,10 +103,7 @@ enum Store {
     /// Decoded from a `data:` URI.
     Inline(Vec<u8>),
     /// In another file.
-    File {
-        source: Box<dyn Source>,
-        length: u64,
-    },
+    File { source: Box<dyn Source>, length: u64 },
 }
 
 impl Store {
@@ -123,9 +117,7 @@ impl Store {
 
 impl std::fmt::Debug for Asset {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Asset")
-            .field("container", &self.container)
-            .finish_non_exhaustive()
+        f.debug_struct("Asset").field("container", &self.container).finish_non_exhaustive()
     }
 }
 
@@ -139,15 +131,7 @@ impl Asset {
         let (json, json_form) = container.json(&mut *main)?;
         let root = parse::root(&json)?;
         let stores = root.buffers.iter().map(|_| None).collect();
-        Ok(Asset {
-            root,
-            json,
-            json_form,
-            container,
-            main,
-            resolve,
-            stores,
-        })
+        Ok(Asset { root, json, json_form, container, main, resolve, stores })
     }
 
     /// The parsed JSON. Its indices are unchecked: use `get`, never `[]`.
@@ -206,9 +190,7 @@ impl Asset {
         match open_uri(text, &*self.resolve, &format!("{pointer}/uri"))? {
             Store::Inline(inline) => bytes = inline,
             Store::File { mut source, .. } => {
-                source
-                    .read_to_end(&mut bytes)
-                    .map_err(|e| Error::data(pointer, e.to_string()))?;
+                source.read_to_end(&mut bytes).map_err(|e| Error::data(pointer, e.to_string()))?;
             }
             Store::Main { .. } => {}
         }
@@ -216,22 +198,14 @@ impl Asset {
     }
 
     /// Fills `out` from a buffer, starting at byte `offset` of it.
-    pub(crate) fn read_at(
-        &mut self,
-        buffer: usize,
-        offset: u64,
-        out: &mut [u8],
-    ) -> Result<(), Error> {
+    pub(crate) fn read_at(&mut self, buffer: usize, offset: u64, out: &mut [u8]) -> Result<(), Error> {
         let pointer = || format!("/buffers/{buffer}");
         let length = self.store(buffer)?.length();
         let end = offset.checked_add(out.len() as u64);
         if end.is_none_or(|end| end > length) {
             return Err(Error::data(
                 pointer(),
-                format!(
-                    "has {length} bytes, too few to read {} from byte {offset}",
-                    out.len()
-                ),
+                format!("has {length} bytes, too few to read {} from byte {offset}", out.len()),
             ));
         }
         let failed = |e: io::Error| Error::data(pointer(), e.to_string());
@@ -246,9 +220,7 @@ impl Asset {
             Some(Store::File { source, .. }) => (source, 0),
             None => return Err(Error::data(pointer(), "is not open")),
         };
-        source
-            .seek(SeekFrom::Start(start + offset))
-            .map_err(failed)?;
+        source.seek(SeekFrom::Start(start + offset)).map_err(failed)?;
         source.read_exact(out).map_err(failed)
     }
 
@@ -262,9 +234,7 @@ impl Asset {
             let opened = self.open_store(buffer)?;
             self.stores[buffer] = Some(opened);
         }
-        self.stores[buffer]
-            .as_ref()
-            .ok_or_else(|| Error::data(format!("/buffers/{buffer}"), "is not open"))
+        self.stores[buffer].as_ref().ok_or_else(|| Error::data(format!("/buffers/{buffer}"), "is not open"))
     }
 
     fn open_store(&mut self, buffer: usize) -> Result<Store, Error> {
@@ -274,10 +244,7 @@ impl Asset {
         }
         match self.container.bin() {
             Some((start, length)) if buffer == 0 => Ok(Store::Main { start, length }),
-            _ => Err(Error::data(
-                pointer,
-                "has no uri, and there is no binary chunk it could stand for",
-            )),
+            _ => Err(Error::data(pointer, "has no uri, and there is no binary chunk it could stand for")),
         }
     }
 }

@@ -9,9 +9,7 @@ use super::Error;
 pub(super) fn root(json: &[u8]) -> Result<Root, Error> {
     match serde_json::from_slice(json) {
         Ok(root) => Ok(root),
-        Err(error) if error.is_data() => {
-            completed(json).ok_or_else(|| Error::Schema(error.to_string()))
-        }
+        Err(error) if error.is_data() => completed(json).ok_or_else(|| Error::Schema(error.to_string())),
         Err(error) => Err(Error::Json(error.to_string())),
     }
 }

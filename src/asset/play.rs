@@ -78,20 +78,16 @@ impl Asset {
     /// The clips of the file. Channels that cannot be played (their node or
     /// sampler is missing, their data too short) are left out.
     pub fn clips(&mut self) -> Vec<Clip> {
-        (0..self.root.animations.len())
-            .map(|animation| self.clip(animation))
-            .collect()
+        (0..self.root.animations.len()).map(|animation| self.clip(animation)).collect()
     }
 
     fn clip(&mut self, animation: usize) -> Clip {
         let count = self.root.animations[animation].channels.len();
-        let channels: Vec<Channel> = (0..count)
-            .filter_map(|index| self.channel(animation, index).ok())
-            .collect();
+        let channels: Vec<Channel> =
+            (0..count).filter_map(|index| self.channel(animation, index).ok()).collect();
         let mut ends = HashMap::new();
         for channel in &channels {
-            ends.entry(channel.input)
-                .or_insert_with(|| self.time(channel, channel.keys - 1).unwrap_or(0.0));
+            ends.entry(channel.input).or_insert_with(|| self.time(channel, channel.keys - 1).unwrap_or(0.0));
         }
         Clip {
             animation,
@@ -204,12 +200,7 @@ impl Player {
     }
 
     /// The channel's value at `t` seconds: x y z, x y z w, or the weights.
-    pub fn value(
-        &mut self,
-        asset: &mut Asset,
-        channel: &Channel,
-        t: f64,
-    ) -> Result<Vec<f64>, Error> {
+    pub fn value(&mut self, asset: &mut Asset, channel: &Channel, t: f64) -> Result<Vec<f64>, Error> {
         match self.interval(asset, channel, t)? {
             Interval::Key(key) => {
                 let stored = asset.stored(channel, key..key + 1)?;
@@ -223,12 +214,7 @@ impl Player {
         }
     }
 
-    fn interval(
-        &mut self,
-        asset: &mut Asset,
-        channel: &Channel,
-        t: f64,
-    ) -> Result<Interval, Error> {
+    fn interval(&mut self, asset: &mut Asset, channel: &Channel, t: f64) -> Result<Interval, Error> {
         match self.found {
             Some((input, time, interval)) if input == channel.input && time == t => Ok(interval),
             _ => {
@@ -345,11 +331,7 @@ fn hermite(width: usize, from: &[f64], to: &[f64], u: f64, length: f64) -> Vec<f
 /// The unit quaternion of the same direction; zero stays zero.
 fn normalized(q: [f64; 4]) -> [f64; 4] {
     let length = dot(q, q).sqrt();
-    if length > 0.0 {
-        q.map(|x| x / length)
-    } else {
-        q
-    }
+    if length > 0.0 { q.map(|x| x / length) } else { q }
 }
 
 fn dot(a: [f64; 4], b: [f64; 4]) -> f64 {
@@ -380,12 +362,7 @@ pub struct Block<'a> {
 impl<'a> Keys<'a> {
     /// Starts before the first key.
     pub fn new(channel: &'a Channel) -> Self {
-        Keys {
-            channel,
-            range: 0..0,
-            times: Vec::new(),
-            values: Vec::new(),
-        }
+        Keys { channel, range: 0..0, times: Vec::new(), values: Vec::new() }
     }
 
     /// The next keys; `None` after the last.

@@ -55,35 +55,19 @@ fn one(accessor: Value, view: Value, bin: &[u8]) -> Asset {
 #[test]
 fn floats_of_every_component_type() {
     for (kind, bin, expected) in [
-        (
-            5120,
-            &[128u8, 127, 0, 255][..],
-            [-1.0, 1.0, 0.0, -1.0 / 127.0],
-        ),
+        (5120, &[128u8, 127, 0, 255][..], [-1.0, 1.0, 0.0, -1.0 / 127.0]),
         (5121, &[0, 255, 51, 1], [0.0, 1.0, 0.2, 1.0 / 255.0]),
-        (
-            5122,
-            &[0, 128, 255, 127, 0, 0, 1, 0],
-            [-1.0, 1.0, 0.0, 1.0 / 32767.0],
-        ),
-        (
-            5123,
-            &[0, 0, 255, 255, 51, 51, 1, 0],
-            [0.0, 1.0, 0.2, 1.0 / 65535.0],
-        ),
+        (5122, &[0, 128, 255, 127, 0, 0, 1, 0], [-1.0, 1.0, 0.0, 1.0 / 32767.0]),
+        (5123, &[0, 0, 255, 255, 51, 51, 1, 0], [0.0, 1.0, 0.2, 1.0 / 65535.0]),
     ] {
-        let accessor =
-            json!({"componentType": kind, "type": "VEC4", "count": 1, "normalized": true});
+        let accessor = json!({"componentType": kind, "type": "VEC4", "count": 1, "normalized": true});
         let got = one(accessor, json!({}), bin).floats(0, 0..1).unwrap();
         for (x, y) in got.iter().zip(expected) {
             assert!((x - y).abs() < 1e-7, "{kind}: {got:?}");
         }
     }
     let accessor = json!({"componentType": 5121, "type": "SCALAR", "count": 2});
-    assert_eq!(
-        one(accessor, json!({}), &[3, 200]).floats(0, 0..2).unwrap(),
-        [3.0, 200.0]
-    );
+    assert_eq!(one(accessor, json!({}), &[3, 200]).floats(0, 0..2).unwrap(), [3.0, 200.0]);
 }
 
 #[test]
@@ -109,9 +93,7 @@ fn columns_of_small_matrices_are_padded() {
 fn longer_than_a_block() {
     let numbers: Vec<f32> = (0..600_000).map(|i| i as f32).collect();
     let accessor = json!({"componentType": 5126, "type": "SCALAR", "count": 600_000});
-    let got = one(accessor, json!({}), &bytes(&numbers))
-        .floats(0, 5..600_000)
-        .unwrap();
+    let got = one(accessor, json!({}), &bytes(&numbers)).floats(0, 5..600_000).unwrap();
     assert_eq!(got, numbers[5..]);
 }
 
@@ -137,11 +119,7 @@ fn sparse_elements_replace_others() {
 
 #[test]
 fn indices_of_every_type() {
-    for (kind, bin) in [
-        (5121, &[1u8, 2][..]),
-        (5123, &[1, 0, 2, 0]),
-        (5125, &[1, 0, 0, 0, 2, 0, 0, 0]),
-    ] {
+    for (kind, bin) in [(5121, &[1u8, 2][..]), (5123, &[1, 0, 2, 0]), (5125, &[1, 0, 0, 0, 2, 0, 0, 0])] {
         let accessor = json!({"componentType": kind, "type": "SCALAR", "count": 2});
         assert_eq!(one(accessor, json!({}), bin).indices(0).unwrap(), [1, 2]);
     }
@@ -156,23 +134,11 @@ fn claims_that_the_file_does_not_back_are_refused() {
     assert!(one(scalar(huge), json!({}), &[0; 4]).shape(0).is_err());
     assert!(one(scalar(u64::MAX), json!({}), &[0; 4]).shape(0).is_err());
     assert!(one(scalar(2), json!({}), &[0; 4]).shape(0).is_err());
-    assert!(
-        one(scalar(1), json!({"byteLength": 1u64 << 31}), &[0; 4])
-            .view(0)
-            .is_err()
-    );
-    assert!(
-        one(scalar(1), json!({"byteOffset": u64::MAX}), &[0; 4])
-            .view(0)
-            .is_err()
-    );
+    assert!(one(scalar(1), json!({"byteLength": 1u64 << 31}), &[0; 4]).view(0).is_err());
+    assert!(one(scalar(1), json!({"byteOffset": u64::MAX}), &[0; 4]).view(0).is_err());
     // A stride below the element's size would multiply the data.
     let accessor = json!({"componentType": 5126, "type": "MAT4", "count": 9});
-    assert!(
-        one(accessor, json!({"byteStride": 4}), &[0; 96])
-            .shape(0)
-            .is_err()
-    );
+    assert!(one(accessor, json!({"byteStride": 4}), &[0; 96]).shape(0).is_err());
     // Nothing backs an accessor of zeros.
     let json = json!({"asset": {"version": "2.0"}, "accessors": [scalar(1 << 31)]});
     assert!(open(glb(&json, &[])).unwrap().shape(0).is_err());
@@ -191,10 +157,7 @@ fn views_and_images() {
     assert_eq!(asset.image(0).unwrap(), b"foo");
     assert_eq!(asset.image(1).unwrap(), b"x");
     let refused = asset.image(2).unwrap_err().to_string();
-    assert!(
-        refused.contains("/images/2/uri") && refused.contains("gone.png"),
-        "{refused}"
-    );
+    assert!(refused.contains("/images/2/uri") && refused.contains("gone.png"), "{refused}");
     assert!(asset.image(3).is_err() && asset.image(4).is_err());
 }
 
@@ -279,20 +242,12 @@ fn played(asset: &mut Asset, times: &[f64]) -> Vec<Vec<f64>> {
     let clip = asset.clips().remove(0);
     let mut player = play::Player::new();
     let channel = &clip.channels[0];
-    times
-        .iter()
-        .map(|&t| player.value(asset, channel, t).unwrap())
-        .collect()
+    times.iter().map(|&t| player.value(asset, channel, t).unwrap()).collect()
 }
 
 #[test]
 fn linear_blends_and_clamps() {
-    let mut asset = animated(
-        "translation",
-        "LINEAR",
-        &[1.0, 3.0],
-        &[0.0, 0.0, 0.0, 2.0, 4.0, 8.0],
-    );
+    let mut asset = animated("translation", "LINEAR", &[1.0, 3.0], &[0.0, 0.0, 0.0, 2.0, 4.0, 8.0]);
     let got = played(&mut asset, &[0.0, 1.5, 3.0, 9.0]);
     assert_eq!(got[0], [0.0, 0.0, 0.0]);
     assert_eq!(got[1], [0.5, 1.0, 2.0]);
@@ -303,12 +258,7 @@ fn linear_blends_and_clamps() {
 
 #[test]
 fn step_holds() {
-    let mut asset = animated(
-        "scale",
-        "STEP",
-        &[0.0, 1.0],
-        &[1.0, 1.0, 1.0, 2.0, 2.0, 2.0],
-    );
+    let mut asset = animated("scale", "STEP", &[0.0, 1.0], &[1.0, 1.0, 1.0, 2.0, 2.0, 2.0]);
     let got = played(&mut asset, &[0.999, 1.0]);
     assert_eq!(got, [[1.0; 3], [2.0; 3]]);
 }
@@ -344,14 +294,7 @@ fn cubic_splines_follow_their_tangents() {
         let got = played(&mut asset, &[t]).remove(0)[0];
         assert!((got - t.powi(3)).abs() < 1e-12, "{got}");
     }
-    let values = [
-        [0.0; 4],
-        [0.0, 0.0, 0.0, 1.0],
-        [0.0; 4],
-        [0.0; 4],
-        [1.0, 0.0, 0.0, 0.0],
-        [0.0; 4],
-    ];
+    let values = [[0.0; 4], [0.0, 0.0, 0.0, 1.0], [0.0; 4], [0.0; 4], [1.0, 0.0, 0.0, 0.0], [0.0; 4]];
     let mut asset = animated("rotation", "CUBICSPLINE", &[0.0, 1.0], &values.concat());
     let got = played(&mut asset, &[0.5]).remove(0);
     assert!((got[0] - 0.5f64.sqrt()).abs() < 1e-12, "{got:?}");
@@ -374,10 +317,7 @@ fn keys_come_in_blocks_without_gaps() {
     while let Some(block) = keys.next(&mut asset).unwrap() {
         assert_eq!(block.first, seen);
         assert_eq!(block.times, &times[seen..seen + block.times.len()]);
-        assert_eq!(
-            block.values,
-            &values[3 * seen..3 * (seen + block.times.len())]
-        );
+        assert_eq!(block.values, &values[3 * seen..3 * (seen + block.times.len())]);
         seen += block.times.len();
         blocks += 1;
     }
@@ -387,20 +327,7 @@ fn keys_come_in_blocks_without_gaps() {
 
 #[test]
 fn channels_that_cannot_be_played_are_left_out() {
-    assert!(
-        animated("rotation", "LINEAR", &[0.0, 1.0], &[0.0; 4]).clips()[0]
-            .channels
-            .is_empty()
-    );
-    assert!(
-        animated("rotation", "BEZIER", &[0.0], &[0.0; 4]).clips()[0]
-            .channels
-            .is_empty()
-    );
-    assert!(
-        animated("rotation", "LINEAR", &[0.0], &[0.0; 4]).clips()[0]
-            .channels
-            .len()
-            == 1
-    );
+    assert!(animated("rotation", "LINEAR", &[0.0, 1.0], &[0.0; 4]).clips()[0].channels.is_empty());
+    assert!(animated("rotation", "BEZIER", &[0.0], &[0.0; 4]).clips()[0].channels.is_empty());
+    assert!(animated("rotation", "LINEAR", &[0.0], &[0.0; 4]).clips()[0].channels.len() == 1);
 }

@@ -15,9 +15,7 @@ pub(super) fn parse(uri: &str) -> Result<Uri, String> {
         return data(rest).map(Uri::Data);
     }
     if let Some(scheme) = scheme(uri) {
-        return Err(format!(
-            "begins with `{scheme}:`; only data: URIs and relative paths are read"
-        ));
+        return Err(format!("begins with `{scheme}:`; only data: URIs and relative paths are read"));
     }
     let path = String::from_utf8(percent_decoded(uri)?)
         .map_err(|_| "is not UTF-8 once its %-escapes are decoded".to_owned())?;
@@ -31,21 +29,14 @@ pub(super) fn parse(uri: &str) -> Result<Uri, String> {
 fn scheme(uri: &str) -> Option<&str> {
     let (scheme, _) = uri.split_once(':')?;
     let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '+' | '-' | '.');
-    (scheme.starts_with(|c: char| c.is_ascii_alphabetic()) && scheme.chars().all(plain))
-        .then_some(scheme)
+    (scheme.starts_with(|c: char| c.is_ascii_alphabetic()) && scheme.chars().all(plain)).then_some(scheme)
 }
 
 /// What follows `data:`: a media type, perhaps `;base64`, a comma, the data.
 fn data(rest: &str) -> Result<Vec<u8>, String> {
-    let (media, text) = rest
-        .split_once(',')
-        .ok_or("is a data: URI without a comma before its data")?;
+    let (media, text) = rest.split_once(',').ok_or("is a data: URI without a comma before its data")?;
     let bytes = percent_decoded(text)?;
-    if media.ends_with(";base64") {
-        base64(&bytes)
-    } else {
-        Ok(bytes)
-    }
+    if media.ends_with(";base64") { base64(&bytes) } else { Ok(bytes) }
 }
 
 fn percent_decoded(text: &str) -> Result<Vec<u8>, String> {
@@ -143,18 +134,8 @@ mod tests {
         assert_eq!(parse("data:application/octet-stream;base64,Zm9v"), foo);
         assert_eq!(parse("data:;base64,Zm9%76"), foo);
         assert_eq!(parse("data:text/plain,f%6fo"), foo);
-        for text in [
-            "",
-            "/etc/x",
-            "%2Fetc/x",
-            "http://a/b",
-            "file:b",
-            "C:/b",
-            "a%2",
-            "a%zz",
-            "%ff",
-            "data:x",
-        ] {
+        for text in ["", "/etc/x", "%2Fetc/x", "http://a/b", "file:b", "C:/b", "a%2", "a%zz", "%ff", "data:x"]
+        {
             assert!(parse(text).is_err(), "{text}");
         }
     }

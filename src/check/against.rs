@@ -38,11 +38,7 @@ impl Largest {
     fn note(&mut self, degrees: f64, time: f64) {
         self.compared += 1;
         if degrees > self.degrees || self.compared == 1 {
-            *self = Largest {
-                degrees,
-                time,
-                ..*self
-            };
+            *self = Largest { degrees, time, ..*self };
         }
     }
 }
@@ -51,8 +47,7 @@ impl Difference {
     /// The largest angle of all.
     pub fn largest(&self) -> Largest {
         let [first, rest @ ..] = [self.keys, self.samples, self.between];
-        rest.into_iter()
-            .fold(first, |a, b| if b.degrees > a.degrees { b } else { a })
+        rest.into_iter().fold(first, |a, b| if b.degrees > a.degrees { b } else { a })
     }
 }
 
@@ -68,10 +63,8 @@ pub fn rotation(
     keys: &[f64],
     curve: &dyn Fn(f64) -> [f64; 4],
 ) -> Result<Difference, Error> {
-    let channel = clip
-        .channels
-        .iter()
-        .find(|channel| channel.node == node && channel.property == Property::Rotation);
+    let channel =
+        clip.channels.iter().find(|channel| channel.node == node && channel.property == Property::Rotation);
     match channel {
         Some(channel) => played(asset, channel, keys, curve),
         None => resting(asset, node, keys, curve),
@@ -97,14 +90,10 @@ fn played(
     while let Some(block) = blocks.next(asset)? {
         let values = block.values.chunks_exact(channel.stored_width());
         for (&time, stored) in block.times.iter().zip(values) {
-            let sample = Sample {
-                time: f64::from(time),
-                stored: stored.iter().copied().map(f64::from).collect(),
-            };
+            let sample =
+                Sample { time: f64::from(time), stored: stored.iter().copied().map(f64::from).collect() };
             let value = four(at_key(channel, &sample.stored));
-            difference
-                .samples
-                .note(degrees(value, curve(sample.time)), sample.time);
+            difference.samples.note(degrees(value, curve(sample.time)), sample.time);
             // Keys up to this sample: before the first it holds.
             while let Some(key) = keys.next_if(|&key| key <= sample.time) {
                 let got = match &previous {
@@ -158,9 +147,7 @@ fn resting(
         difference.keys.note(degrees(rotation, curve(key)), key);
         for u in keys.get(i + 1).into_iter().flat_map(|_| BETWEEN) {
             let time = key + u * (keys[i + 1] - key);
-            difference
-                .between
-                .note(degrees(rotation, curve(time)), time);
+            difference.between.note(degrees(rotation, curve(time)), time);
         }
     }
     Ok(difference)
@@ -201,11 +188,7 @@ mod tests {
     }
 
     fn file(interpolation: &str, times: &[f32], angles: &[f64]) -> Asset {
-        let values: Vec<f32> = angles
-            .iter()
-            .flat_map(|&a| turn(a))
-            .map(|x| x as f32)
-            .collect();
+        let values: Vec<f32> = angles.iter().flat_map(|&a| turn(a)).map(|x| x as f32).collect();
         animated("rotation", interpolation, times, &values)
     }
 
@@ -226,10 +209,7 @@ mod tests {
             for start in [0.0, 33.0] {
                 let (a, b) = (turn(start).map(|x| -3.0 * x), turn(start + angle));
                 let got = degrees(a, b);
-                assert!(
-                    (got - angle).abs() < 1e-13 + 1e-14 * angle,
-                    "{angle}: {got}"
-                );
+                assert!((got - angle).abs() < 1e-13 + 1e-14 * angle, "{angle}: {got}");
             }
         }
         assert!(degrees(turn(0.0), turn(350.0)) - 10.0 < 1e-12);
@@ -242,14 +222,7 @@ mod tests {
         let mut asset = file("LINEAR", &[0.0, 0.5, 2.0], &[0.0, 15.0, 60.0]);
         let found = compared(&mut asset, &[0.0, 0.3, 2.0], &|t| turn(30.0 * t));
         assert!(found.largest().degrees < 1e-5, "{found:?}");
-        assert_eq!(
-            (
-                found.keys.compared,
-                found.samples.compared,
-                found.between.compared
-            ),
-            (3, 3, 6)
-        );
+        assert_eq!((found.keys.compared, found.samples.compared, found.between.compared), (3, 3, 6));
     }
 
     #[test]

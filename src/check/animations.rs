@@ -12,10 +12,9 @@ use super::{Code, Report};
 pub(super) fn check(root: &Root, report: &mut Report) {
     for (a, animation) in root.animations.iter().enumerate() {
         let place = format!("/animations/{a}");
-        for (list, empty) in [
-            ("channels", animation.channels.is_empty()),
-            ("samplers", animation.samplers.is_empty()),
-        ] {
+        for (list, empty) in
+            [("channels", animation.channels.is_empty()), ("samplers", animation.samplers.is_empty())]
+        {
             if empty {
                 report.add(
                     Code::AnimationEmpty,
@@ -47,18 +46,14 @@ fn targets(root: &Root, animation: &Animation, place: &str, report: &mut Report)
             report.add(
                 Code::ChannelTwice,
                 place.clone(),
-                format!(
-                    "another channel of this clip moves the same property of node {index}; keep one"
-                ),
+                format!("another channel of this clip moves the same property of node {index}; keep one"),
             );
         }
         if node.matrix.is_some() && path != Property::MorphTargetWeights {
             report.add(
                 Code::AnimatedMatrix,
                 place.clone(),
-                format!(
-                    "node {index} has a matrix; give it translation, rotation and scale instead"
-                ),
+                format!("node {index} has a matrix; give it translation, rotation and scale instead"),
             );
         }
         if path == Property::MorphTargetWeights && targets_of(root, index.value()) == 0 {
@@ -75,9 +70,7 @@ fn targets(root: &Root, animation: &Animation, place: &str, report: &mut Report)
 fn targets_of(root: &Root, node: usize) -> usize {
     let mesh = root.nodes.get(node).and_then(|node| root.get(node.mesh?));
     let primitive = mesh.and_then(|mesh| mesh.primitives.first());
-    primitive
-        .and_then(|primitive| primitive.targets.as_ref())
-        .map_or(0, Vec::len)
+    primitive.and_then(|primitive| primitive.targets.as_ref()).map_or(0, Vec::len)
 }
 
 fn sampler(root: &Root, animation: &Animation, index: usize, place: &str, report: &mut Report) {
@@ -93,17 +86,11 @@ fn sampler(root: &Root, animation: &Animation, index: usize, place: &str, report
         report.add(
             Code::CubicsplineOneKey,
             format!("{place}/input"),
-            format!(
-                "has {} keys, and CUBICSPLINE needs 2; use STEP for a value that stays",
-                input.count.0
-            ),
+            format!("has {} keys, and CUBICSPLINE needs 2; use STEP for a value that stays", input.count.0),
         );
     }
     let mut paths = HashSet::new();
-    let channels = animation
-        .channels
-        .iter()
-        .filter(|channel| channel.sampler.value() == index);
+    let channels = animation.channels.iter().filter(|channel| channel.sampler.value() == index);
     for channel in channels {
         let Checked::Valid(path) = channel.target.path else {
             continue;
@@ -129,12 +116,7 @@ fn count(
         Property::MorphTargetWeights => weights,
         _ => 1,
     };
-    let per_key = per_key
-        * if interpolation == Interpolation::CubicSpline {
-            3
-        } else {
-            1
-        };
+    let per_key = per_key * if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
     let expected = u128::from(input.count.0) * u128::from(per_key);
     if expected != u128::from(output.count.0) && per_key > 0 {
         report.add(
@@ -179,18 +161,11 @@ fn values(output: &Accessor, path: Property, place: &str, report: &mut Report) {
         Some(_) => fractions && output.normalized,
     };
     if output.type_ != Checked::Valid(expected) || !component {
-        let or = if fractions {
-            " or normalized 8- or 16-bit integers"
-        } else {
-            ""
-        };
+        let or = if fractions { " or normalized 8- or 16-bit integers" } else { "" };
         report.add(
             Code::OutputType,
             format!("{place}/output"),
-            format!(
-                "must be of type {} and of float32{or} for this property",
-                name(expected)
-            ),
+            format!("must be of type {} and of float32{or} for this property", name(expected)),
         );
     }
 }

@@ -34,7 +34,9 @@ fn check_buffer(asset: &mut Asset, buffer: usize, report: &mut Report) {
         Ok(length) if length < claimed => report.add(
             Code::BufferTooShort,
             format!("{place}/byteLength"),
-            format!("says {claimed} bytes, and there are {length}; the data was cut short or the number is wrong"),
+            format!(
+                "says {claimed} bytes, and there are {length}; the data was cut short or the number is wrong"
+            ),
         ),
         Ok(_) => {}
         Err(_) if filled_by_extension(asset.root(), buffer) => {}
@@ -55,11 +57,7 @@ fn check_view(asset: &Asset, view: usize, report: &mut Report) {
     let stored = &root.buffer_views[view];
     let place = format!("/bufferViews/{view}");
     if stored.byte_length.0 == 0 {
-        report.add(
-            Code::InvalidValue,
-            format!("{place}/byteLength"),
-            "must be 1 or more",
-        );
+        report.add(Code::InvalidValue, format!("{place}/byteLength"), "must be 1 or more");
     }
     if let Some(stride) = stored.byte_stride
         && (stride.0 % 4 != 0 || !(4..=252).contains(&stride.0))
@@ -90,8 +88,7 @@ fn check_view(asset: &Asset, view: usize, report: &mut Report) {
 fn check_accessor(asset: &Asset, accessor: usize, report: &mut Report) {
     let stored = &asset.root().accessors[accessor];
     let place = format!("/accessors/{accessor}");
-    let (Checked::Valid(component), Checked::Valid(kind)) = (&stored.component_type, &stored.type_)
-    else {
+    let (Checked::Valid(component), Checked::Valid(kind)) = (&stored.component_type, &stored.type_) else {
         return;
     };
     let (component, count) = (component.0, stored.count.0);
@@ -105,13 +102,7 @@ fn check_accessor(asset: &Asset, accessor: usize, report: &mut Report) {
     let layout = Layout::new(*kind, component);
     let offset = stored.byte_offset.unwrap_or_default().0;
     if let Some(view) = stored.buffer_view {
-        let part = Part {
-            view: view.value(),
-            offset,
-            count,
-            layout,
-            component,
-        };
+        let part = Part { view: view.value(), offset, count, layout, component };
         check_part(asset, &place, &part, report);
     }
     if let Some(sparse) = &stored.sparse {
@@ -141,17 +132,12 @@ fn check_part(asset: &Asset, place: &str, part: &Part, report: &mut Report) {
             format!("begins at byte {start} + {} of its buffer; numbers of {size} bytes must begin at a multiple of {size}", part.offset),
         );
     }
-    let stride = view
-        .byte_stride
-        .map_or(part.layout.stride(), |stride| stride.0 as u64);
+    let stride = view.byte_stride.map_or(part.layout.stride(), |stride| stride.0 as u64);
     if stride < part.layout.size() {
         report.add(
             Code::ViewStride,
             format!("/bufferViews/{}/byteStride", part.view),
-            format!(
-                "is {stride}, less than the {} bytes of an element of {place}",
-                part.layout.size()
-            ),
+            format!("is {stride}, less than the {} bytes of an element of {place}", part.layout.size()),
         );
     }
     let end = u128::from(part.offset) + part.layout.span(stride, part.count);
@@ -179,10 +165,7 @@ fn check_sparse(
         report.add(
             Code::SparseIndices,
             format!("{place}/sparse/count"),
-            format!(
-                "must be from 1 to the accessor's {count} and is {}",
-                sparse.count.0
-            ),
+            format!("must be from 1 to the accessor's {count} and is {}", sparse.count.0),
         );
     }
     let values = Part {

@@ -166,10 +166,7 @@ mod tests {
         for code in Code::ALL {
             let text = code.as_str();
             assert!(seen.insert(text), "{text}");
-            assert!(
-                text.chars().all(|c| c.is_ascii_uppercase() || c == '_'),
-                "{text}"
-            );
+            assert!(text.chars().all(|c| c.is_ascii_uppercase() || c == '_'), "{text}");
         }
     }
 }

@@ -37,7 +37,9 @@ fn lengths(glb: &Glb, report: &mut Report) {
         report.add(
             Code::GlbTruncated,
             8,
-            format!("the header says {declared} bytes and the file has {length}; it was cut short: make it again"),
+            format!(
+                "the header says {declared} bytes and the file has {length}; it was cut short: make it again"
+            ),
         );
     } else if declared < length {
         report.add(
@@ -49,22 +51,14 @@ fn lengths(glb: &Glb, report: &mut Report) {
         report.add(
             Code::GlbTrailingData,
             glb.end,
-            format!(
-                "{} bytes follow the last chunk that can be read; remove them",
-                length - glb.end
-            ),
+            format!("{} bytes follow the last chunk that can be read; remove them", length - glb.end),
         );
     }
 }
 
 fn chunks(glb: &Glb, report: &mut Report) {
     for (index, chunk) in glb.chunks.iter().enumerate() {
-        let Chunk {
-            kind,
-            start,
-            declared,
-            length,
-        } = *chunk;
+        let Chunk { kind, start, declared, length } = *chunk;
         let (header, name) = (start - 8, kind.escape_ascii());
         if declared > length {
             report.add(
@@ -84,9 +78,7 @@ fn chunks(glb: &Glb, report: &mut Report) {
             report.add(
                 Code::GlbChunkOrder,
                 header,
-                format!(
-                    "chunk {index} is `{name}`; JSON must be chunk 0 and BIN chunk 1, each once"
-                ),
+                format!("chunk {index} is `{name}`; JSON must be chunk 0 and BIN chunk 1, each once"),
             );
         } else if kind != JSON && kind != BIN {
             report.add(

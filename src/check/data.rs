@@ -40,8 +40,7 @@ impl<'a> Shared<'a> {
         let (mut first, mut numbers) = (0, Vec::new());
         while first < shape.count {
             let last = shape.count.min(first + at_once);
-            self.asset()
-                .floats_into(&shape, first..last, &mut numbers)?;
+            self.asset().floats_into(&shape, first..last, &mut numbers)?;
             block(first, &numbers);
             first = last;
         }
@@ -49,11 +48,7 @@ impl<'a> Shared<'a> {
     }
 
     /// All keys of a channel, a block at a time.
-    pub(super) fn keys(
-        &self,
-        channel: &Channel,
-        mut block: impl FnMut(Block<'_>),
-    ) -> Result<(), Error> {
+    pub(super) fn keys(&self, channel: &Channel, mut block: impl FnMut(Block<'_>)) -> Result<(), Error> {
         let mut keys = Keys::new(channel);
         loop {
             keys.read(&mut self.asset())?;
@@ -67,18 +62,9 @@ impl<'a> Shared<'a> {
 
 /// One pass over one accessor or channel.
 enum Job {
-    Times {
-        accessor: usize,
-        place: String,
-    },
-    Rotations {
-        channel: Box<Channel>,
-        place: String,
-    },
-    Values {
-        accessor: usize,
-        finite: bool,
-    },
+    Times { accessor: usize, place: String },
+    Rotations { channel: Box<Channel>, place: String },
+    Values { accessor: usize, finite: bool },
 }
 
 pub(super) fn check(asset: &mut Asset, report: &mut Report) {
@@ -129,10 +115,7 @@ fn jobs(asset: &mut Asset) -> Vec<Job> {
         for (s, input) in inputs(asset, a) {
             if looked_at.insert(input) {
                 let place = format!("/animations/{a}/samplers/{s}/input");
-                jobs.push(Job::Times {
-                    accessor: input,
-                    place,
-                });
+                jobs.push(Job::Times { accessor: input, place });
             }
         }
         let mut samplers = BTreeSet::new();
@@ -143,18 +126,12 @@ fn jobs(asset: &mut Asset) -> Vec<Job> {
             if channel.property == Property::Rotation && samplers.insert(channel.sampler) {
                 looked_at.insert(channel.output);
                 let place = format!("/animations/{a}/samplers/{}/output", channel.sampler);
-                jobs.push(Job::Rotations {
-                    channel: Box::new(channel),
-                    place,
-                });
+                jobs.push(Job::Rotations { channel: Box::new(channel), place });
             }
         }
     }
     let stored = (0..asset.root().accessors.len()).filter(|&accessor| is_stored(asset, accessor));
-    jobs.extend(stored.map(|accessor| Job::Values {
-        accessor,
-        finite: !looked_at.contains(&accessor),
-    }));
+    jobs.extend(stored.map(|accessor| Job::Values { accessor, finite: !looked_at.contains(&accessor) }));
     jobs
 }
 
@@ -177,14 +154,11 @@ fn inputs(asset: &Asset, animation: usize) -> Vec<(usize, usize)> {
     let samplers = root.animations[animation].samplers.iter().enumerate();
     let scalars = samplers.filter(|(_, sampler)| {
         root.get(sampler.input).is_some_and(|input| {
-            let float =
-                matches!(&input.component_type, Checked::Valid(c) if c.0 == ComponentType::F32);
+            let float = matches!(&input.component_type, Checked::Valid(c) if c.0 == ComponentType::F32);
             float && input.type_ == Checked::Valid(Type::Scalar)
         })
     });
-    scalars
-        .map(|(s, sampler)| (s, sampler.input.value()))
-        .collect()
+    scalars.map(|(s, sampler)| (s, sampler.input.value())).collect()
 }
 
 /// Compares the ends of channels in a clip, and of clips, by the last times
@@ -192,10 +166,7 @@ fn inputs(asset: &Asset, animation: usize) -> Vec<(usize, usize)> {
 fn lengths(shared_asset: &Asset, ends: &BTreeMap<usize, f64>, report: &mut Report) {
     let mut clips = Vec::new();
     for (a, animation) in shared_asset.root().animations.iter().enumerate() {
-        let ends = animation
-            .samplers
-            .iter()
-            .filter_map(|s| ends.get(&s.input.value()));
+        let ends = animation.samplers.iter().filter_map(|s| ends.get(&s.input.value()));
         let Some((first, last)) = span(ends.copied()) else {
             continue;
         };
@@ -215,10 +186,7 @@ fn lengths(shared_asset: &Asset, ends: &BTreeMap<usize, f64>, report: &mut Repor
         report.add(
             Code::ClipLengths,
             "/animations",
-            format!(
-                "the clips last from {} s to {} s",
-                shortest as f32, longest as f32
-            ),
+            format!("the clips last from {} s to {} s", shortest as f32, longest as f32),
         );
     }
 }
@@ -226,7 +194,5 @@ fn lengths(shared_asset: &Asset, ends: &BTreeMap<usize, f64>, report: &mut Repor
 /// The least and the greatest.
 fn span(mut numbers: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     let first = numbers.next()?;
-    Some(numbers.fold((first, first), |(least, greatest), x| {
-        (least.min(x), greatest.max(x))
-    }))
+    Some(numbers.fold((first, first), |(least, greatest), x| (least.min(x), greatest.max(x))))
 }

@@ -21,8 +21,7 @@ pub(super) fn check(asset: &mut Asset, report: &mut Report) {
             attributes(root, primitive, &place, report);
             targets(root, primitive, &place, report);
             indices(root, primitive, &place, report);
-            if let (Some(indices), Some(vertices)) = (primitive.indices, vertices(root, primitive))
-            {
+            if let (Some(indices), Some(vertices)) = (primitive.indices, vertices(root, primitive)) {
                 let entry = indexed.entry(indices.value()).or_insert((vertices, place));
                 entry.0 = entry.0.min(vertices);
             }
@@ -36,18 +35,12 @@ pub(super) fn check(asset: &mut Asset, report: &mut Report) {
 
 /// The number of a primitive's vertices.
 fn vertices(root: &Root, primitive: &Primitive) -> Option<u64> {
-    let accessors = primitive
-        .attributes
-        .values()
-        .filter_map(|&index| root.get(index));
+    let accessors = primitive.attributes.values().filter_map(|&index| root.get(index));
     accessors.map(|accessor| accessor.count.0).min()
 }
 
 fn attributes(root: &Root, primitive: &Primitive, place: &str, report: &mut Report) {
-    let quantized = root
-        .extensions_used
-        .iter()
-        .any(|name| name == "KHR_mesh_quantization");
+    let quantized = root.extensions_used.iter().any(|name| name == "KHR_mesh_quantization");
     let mut count = None;
     for (semantic, &index) in &primitive.attributes {
         let (Checked::Valid(semantic), Some(accessor)) = (semantic, root.get(index)) else {
@@ -73,7 +66,10 @@ fn attributes(root: &Root, primitive: &Primitive, place: &str, report: &mut Repo
             report.add(
                 Code::AttributeCount,
                 place,
-                format!("has {} elements, and another attribute of the primitive {first}; they must agree", accessor.count.0),
+                format!(
+                    "has {} elements, and another attribute of the primitive {first}; they must agree",
+                    accessor.count.0
+                ),
             );
         }
     }
@@ -86,18 +82,12 @@ fn targets(root: &Root, primitive: &Primitive, place: &str, report: &mut Report)
     };
     for (t, target) in primitive.targets.iter().flatten().enumerate() {
         let accessors = [target.positions, target.normals, target.tangents];
-        let accessors = accessors
-            .into_iter()
-            .flatten()
-            .filter_map(|index| root.get(index));
+        let accessors = accessors.into_iter().flatten().filter_map(|index| root.get(index));
         for accessor in accessors.filter(|accessor| accessor.count.0 != vertices) {
             report.add(
                 Code::AttributeCount,
                 format!("{place}/targets/{t}"),
-                format!(
-                    "has {} elements for {vertices} vertices; they must agree",
-                    accessor.count.0
-                ),
+                format!("has {} elements for {vertices} vertices; they must agree", accessor.count.0),
             );
         }
     }
@@ -130,10 +120,9 @@ fn indices(root: &Root, primitive: &Primitive, place: &str, report: &mut Report)
         return;
     };
     let unsigned = match &accessor.component_type {
-        Checked::Valid(component) => matches!(
-            component.0,
-            ComponentType::U8 | ComponentType::U16 | ComponentType::U32
-        ),
+        Checked::Valid(component) => {
+            matches!(component.0, ComponentType::U8 | ComponentType::U16 | ComponentType::U32)
+        }
         Checked::Invalid => true,
     };
     let scalar = accessor.type_ == Checked::Valid(Type::Scalar);
@@ -169,7 +158,10 @@ fn vertex_indices(
         report.add(
             Code::VertexIndex,
             format!("{place}/indices"),
-            format!("{beyond} of {} indices name vertices beyond the {vertices} there are, up to {largest}", shape.count),
+            format!(
+                "{beyond} of {} indices name vertices beyond the {vertices} there are, up to {largest}",
+                shape.count
+            ),
         );
     }
     Ok(())

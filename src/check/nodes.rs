@@ -95,11 +95,7 @@ fn transforms(root: &Root, report: &mut Report) {
         ];
         for (part, numbers) in parts {
             if numbers.is_some_and(|numbers| numbers.iter().any(|x| !x.is_finite())) {
-                report.add(
-                    Code::NotFinite,
-                    place(part),
-                    "holds a number beyond the range of float32",
-                );
+                report.add(Code::NotFinite, place(part), "holds a number beyond the range of float32");
             }
         }
         if let Some(q) = rotation {

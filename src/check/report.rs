@@ -99,10 +99,7 @@ impl Report {
 
     /// How many findings are of this severity.
     pub fn count(&self, severity: Severity) -> u64 {
-        let of_it = self
-            .counts
-            .iter()
-            .filter(|(code, _)| code.severity() == severity);
+        let of_it = self.counts.iter().filter(|(code, _)| code.severity() == severity);
         of_it.map(|(_, count)| count).sum()
     }
 
@@ -134,12 +131,7 @@ impl Report {
     pub fn text(&self, file: &str) -> String {
         let mut lines = String::new();
         for finding in &self.findings {
-            let Finding {
-                code,
-                severity,
-                place,
-                message,
-            } = finding;
+            let Finding { code, severity, place, message } = finding;
             lines += &format!("{file}: {severity} {code} at {place}: {message}\n");
         }
         for (code, count) in self.left_out() {

@@ -119,11 +119,7 @@ impl Rotations<'_> {
         }
         if linear && step > STEP {
             let jump = interval <= JUMP.0 || interval <= JUMP.1 * float_step(t);
-            let tally = if jump {
-                &mut self.jumps
-            } else {
-                &mut self.steps
-            };
+            let tally = if jump { &mut self.jumps } else { &mut self.steps };
             tally.note(key, time, step);
         }
     }

@@ -50,9 +50,7 @@ fn extensions(root: &Root, report: &mut Report) {
         report.add(
             Code::ExtensionRequired,
             place,
-            format!(
-                "viewers without {name:?} refuse the file; leave the extension out where you can"
-            ),
+            format!("viewers without {name:?} refuse the file; leave the extension out where you can"),
         );
     }
 }
@@ -69,11 +67,9 @@ fn validate(root: &Root, report: &mut Report) {
     let at = |name: &'static str| move || Path::new().field(name);
     root.asset.validate(root, at("asset"), &mut problem);
     root.accessors.validate(root, at("accessors"), &mut problem);
-    root.animations
-        .validate(root, at("animations"), &mut problem);
+    root.animations.validate(root, at("animations"), &mut problem);
     root.buffers.validate(root, at("buffers"), &mut problem);
-    root.buffer_views
-        .validate(root, at("bufferViews"), &mut problem);
+    root.buffer_views.validate(root, at("bufferViews"), &mut problem);
     root.cameras.validate(root, at("cameras"), &mut problem);
     root.images.validate(root, at("images"), &mut problem);
     root.materials.validate(root, at("materials"), &mut problem);
@@ -85,28 +81,17 @@ fn validate(root: &Root, report: &mut Report) {
     root.textures.validate(root, at("textures"), &mut problem);
     for (m, mesh) in root.meshes.iter().enumerate() {
         for (p, primitive) in mesh.primitives.iter().enumerate() {
-            let path = || {
-                Path::new()
-                    .field("meshes")
-                    .index(m)
-                    .field("primitives")
-                    .index(p)
-            };
+            let path = || Path::new().field("meshes").index(m).field("primitives").index(p);
             match dangling_position(root, primitive) {
                 false => primitive.validate(root, path, &mut problem),
-                true => problem(
-                    &|| path().field("attributes").key("POSITION"),
-                    Error::IndexOutOfBounds,
-                ),
+                true => problem(&|| path().field("attributes").key("POSITION"), Error::IndexOutOfBounds),
             }
         }
     }
 }
 
 fn dangling_position(root: &Root, primitive: &Primitive) -> bool {
-    let position = primitive
-        .attributes
-        .get(&Checked::Valid(Semantic::Positions));
+    let position = primitive.attributes.get(&Checked::Valid(Semantic::Positions));
     position.is_some_and(|accessor| accessor.value() >= root.accessors.len())
 }
 
@@ -136,11 +121,7 @@ fn note(path: &str, error: Error, root: &Root, report: &mut Report) {
             place,
             "is none of the values that glTF 2.0 allows here; correct it",
         ),
-        Error::Oversize => report.add(
-            Code::InvalidValue,
-            place,
-            "is larger than this machine can address",
-        ),
+        Error::Oversize => report.add(Code::InvalidValue, place, "is larger than this machine can address"),
         Error::Unsupported => {}
     }
 }
@@ -212,15 +193,10 @@ fn odd_values(json: &Value, report: &mut Report) {
                 }
             }
             Value::Array(array) => {
-                let items = array
-                    .iter()
-                    .enumerate()
-                    .filter(|(_, item)| may_be_odd(item));
+                let items = array.iter().enumerate().filter(|(_, item)| may_be_odd(item));
                 open.extend(items.map(|(i, item)| (format!("{pointer}/{i}"), item, index)));
             }
-            Value::Number(number)
-                if index && number.as_u64().is_some_and(|n| n > u64::from(u32::MAX)) =>
-            {
+            Value::Number(number) if index && number.as_u64().is_some_and(|n| n > u64::from(u32::MAX)) => {
                 let message = format!("is {number}, more than any file has objects; correct it");
                 report.add(Code::IndexOutOfRange, pointer, message);
             }
@@ -282,10 +258,7 @@ mod tests {
 
     #[test]
     fn paths_become_pointers() {
-        assert_eq!(
-            pointer("animations[0].samplers[12].input"),
-            "/animations/0/samplers/12/input"
-        );
+        assert_eq!(pointer("animations[0].samplers[12].input"), "/animations/0/samplers/12/input");
         assert_eq!(
             pointer(r#"meshes[1].primitives[0].attributes["POSITION"]"#),
             "/meshes/1/primitives/0/attributes/POSITION"

@@ -68,9 +68,7 @@ fn checked(file: Vec<u8>) -> Report {
 /// Codes and places, as they are printed.
 fn found(report: &Report) -> Vec<(&'static str, String)> {
     let findings = report.findings().iter();
-    findings
-        .map(|f| (f.code.as_str(), f.place.to_string()))
-        .collect()
+    findings.map(|f| (f.code.as_str(), f.place.to_string())).collect()
 }
 
 /// Breaks the good file and expects just these findings.
@@ -80,10 +78,7 @@ fn expect(expected: &[(&str, &str)], edit: impl Fn(&mut Value, &mut Vec<u8>)) {
     edit(&mut json, &mut bin);
     let report = checked(glb(&json, &bin));
     let found = found(&report);
-    let found: Vec<_> = found
-        .iter()
-        .map(|(code, place)| (*code, place.as_str()))
-        .collect();
+    let found: Vec<_> = found.iter().map(|(code, place)| (*code, place.as_str())).collect();
     assert_eq!(found, expected, "\n{}", report.text("FILE"));
 }
 
@@ -123,15 +118,11 @@ fn a_good_file_has_no_findings() {
 
 #[test]
 fn lengths_of_a_glb() {
-    expect_bytes(&[("GLB_TRUNCATED", "byte 8".into())], |file| {
-        set_u32(file, 8, |n| n + 4)
-    });
+    expect_bytes(&[("GLB_TRUNCATED", "byte 8".into())], |file| set_u32(file, 8, |n| n + 4));
     let (json, bin) = good();
     let length = glb(&json, &bin).len();
     let end = format!("byte {length}");
-    expect_bytes(&[("GLB_TRAILING_DATA", end.clone())], |file| {
-        file.extend([0; 9])
-    });
+    expect_bytes(&[("GLB_TRAILING_DATA", end.clone())], |file| file.extend([0; 9]));
     expect_bytes(&[("GLB_TRAILING_DATA", end)], |file| {
         file.extend([0; 4]);
         set_u32(file, 8, |n| n + 4);
@@ -144,9 +135,7 @@ fn chunks_of_a_glb() {
     let file = glb(&json, &bin);
     let (at, end) = (bin_at(&file), file.len());
     let bin_header = format!("byte {at}");
-    expect_bytes(&[("GLB_CHUNK_TRUNCATED", bin_header.clone())], |file| {
-        set_u32(file, at, |n| n + 4)
-    });
+    expect_bytes(&[("GLB_CHUNK_TRUNCATED", bin_header.clone())], |file| set_u32(file, at, |n| n + 4));
     expect_bytes(&[("GLB_CHUNK_ALIGNMENT", bin_header)], |file| {
         file.truncate(end - 1);
         set_u32(file, at, |n| n - 1);
@@ -160,14 +149,8 @@ fn chunks_of_a_glb() {
             set_u32(file, 8, |n| n + 12);
         }
     };
-    expect_bytes(
-        &[("GLB_CHUNK_ORDER", format!("byte {end}"))],
-        more(b"BIN\0"),
-    );
-    expect_bytes(
-        &[("GLB_UNKNOWN_CHUNK", format!("byte {end}"))],
-        more(b"ABCD"),
-    );
+    expect_bytes(&[("GLB_CHUNK_ORDER", format!("byte {end}"))], more(b"BIN\0"));
+    expect_bytes(&[("GLB_UNKNOWN_CHUNK", format!("byte {end}"))], more(b"ABCD"));
     expect_bytes(&[("GLB_BIN_UNUSED", format!("byte {}", at + 8))], |file| {
         file.extend([0; 4]);
         set_u32(file, at, |n| n + 4);
@@ -187,9 +170,7 @@ fn what_stands_around_the_json() {
         set_u32(file, 8, |n| n + 4);
     };
     let end = bin_at(&glb(&json, &bin));
-    expect_bytes(&[("JSON_PADDING", padded)], |file| {
-        longer(file, end, &[0; 4])
-    });
+    expect_bytes(&[("JSON_PADDING", padded)], |file| longer(file, end, &[0; 4]));
     expect_bytes(&[("JSON_BYTE_ORDER_MARK", "byte 20".into())], |file| {
         longer(file, 20, b"\xEF\xBB\xBF ");
     });
@@ -197,27 +178,15 @@ fn what_stands_around_the_json() {
 
 #[test]
 fn the_json_as_a_whole() {
-    expect(&[("SCHEMA", "the JSON's root")], |json, _| {
-        json["nodes"] = json!(3)
-    });
-    expect(&[("VERSION", "/asset/version")], |json, _| {
-        json["asset"]["version"] = json!("1.0")
-    });
-    expect(&[("VERSION", "/asset/minVersion")], |json, _| {
-        json["asset"]["minVersion"] = json!("2.1")
+    expect(&[("SCHEMA", "the JSON's root")], |json, _| json["nodes"] = json!(3));
+    expect(&[("VERSION", "/asset/version")], |json, _| json["asset"]["version"] = json!("1.0"));
+    expect(&[("VERSION", "/asset/minVersion")], |json, _| json["asset"]["minVersion"] = json!("2.1"));
+    expect(&[("EXTENSION_REQUIRED", "/extensionsRequired/0")], |json, _| {
+        json["extensionsRequired"] = json!(["KHR_new"]);
+        json["extensionsUsed"] = json!(["KHR_new"]);
     });
     expect(
-        &[("EXTENSION_REQUIRED", "/extensionsRequired/0")],
-        |json, _| {
-            json["extensionsRequired"] = json!(["KHR_new"]);
-            json["extensionsUsed"] = json!(["KHR_new"]);
-        },
-    );
-    expect(
-        &[
-            ("EXTENSION_UNDECLARED", "/extensionsRequired/0"),
-            ("EXTENSION_REQUIRED", "/extensionsRequired/0"),
-        ],
+        &[("EXTENSION_UNDECLARED", "/extensionsRequired/0"), ("EXTENSION_REQUIRED", "/extensionsRequired/0")],
         |json, _| json["extensionsRequired"] = json!(["KHR_new"]),
     );
 }
@@ -225,83 +194,48 @@ fn the_json_as_a_whole() {
 #[test]
 fn indices_that_refer_to_nothing() {
     let out = |place: &'static str| [("INDEX_OUT_OF_RANGE", place)];
-    expect(&out("/nodes/1/children/0"), |json, _| {
-        json["nodes"][1]["children"] = json!([7])
-    });
+    expect(&out("/nodes/1/children/0"), |json, _| json["nodes"][1]["children"] = json!([7]));
     expect(&out("/scene"), |json, _| json["scene"] = json!(1));
     expect(&out("/animations/0/channels/0/target/node"), |json, _| {
         json["animations"][0]["channels"][0]["target"]["node"] = json!(2);
     });
     expect(
-        &[
-            out("/animations/0/channels/0/sampler")[0],
-            ("UNUSED_OBJECT", "/animations/0/samplers/0"),
-        ],
+        &[out("/animations/0/channels/0/sampler")[0], ("UNUSED_OBJECT", "/animations/0/samplers/0")],
         |json, _| {
             json["animations"][0]["channels"][0]["sampler"] = json!(2);
         },
     );
-    expect(
-        &[
-            out("/animations/0/samplers/0/output")[0],
-            ("UNUSED_OBJECT", "/accessors/1"),
-        ],
-        |json, _| {
-            json["animations"][0]["samplers"][0]["output"] = json!(5);
-        },
-    );
-    expect(
-        &[
-            out("/accessors/1/bufferView")[0],
-            ("UNUSED_OBJECT", "/bufferViews/1"),
-        ],
-        |json, _| {
-            json["accessors"][1]["bufferView"] = json!(9);
-        },
-    );
+    expect(&[out("/animations/0/samplers/0/output")[0], ("UNUSED_OBJECT", "/accessors/1")], |json, _| {
+        json["animations"][0]["samplers"][0]["output"] = json!(5);
+    });
+    expect(&[out("/accessors/1/bufferView")[0], ("UNUSED_OBJECT", "/bufferViews/1")], |json, _| {
+        json["accessors"][1]["bufferView"] = json!(9);
+    });
     // Here gltf-json itself would panic.
     let position = "/meshes/0/primitives/0/attributes/POSITION";
-    expect(
-        &[out(position)[0], ("UNUSED_OBJECT", "/accessors/2")],
-        |json, _| {
-            json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(99);
-        },
-    );
+    expect(&[out(position)[0], ("UNUSED_OBJECT", "/accessors/2")], |json, _| {
+        json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(99);
+    });
     // And here it would take the low 32 bits.
     expect(&out(position), |json, _| {
         json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!((1u64 << 32) + 2);
     });
-    expect(&out("/nodes/0/children/0"), |json, _| {
-        json["nodes"][0]["children"] = json!([(1u64 << 32) + 1])
-    });
+    expect(&out("/nodes/0/children/0"), |json, _| json["nodes"][0]["children"] = json!([(1u64 << 32) + 1]));
 }
 
 #[test]
 fn values_that_gltf_does_not_know() {
-    expect(
-        &[("INVALID_VALUE", "/animations/0/samplers/0/interpolation")],
-        |json, _| {
-            json["animations"][0]["samplers"][0]["interpolation"] = json!("BEZIER");
-        },
-    );
-    expect(
-        &[("INVALID_VALUE", "/animations/0/channels/0/target/path")],
-        |json, _| {
-            json["animations"][0]["channels"][0]["target"]["path"] = json!("colour");
-        },
-    );
-    expect(
-        &[("INVALID_VALUE", "/meshes/0/primitives/0/mode")],
-        |json, _| {
-            json["meshes"][0]["primitives"][0]["mode"] = json!(7);
-        },
-    );
-    expect(&[("INVALID_VALUE", "/nodes/1/camera")], |json, _| {
-        json["nodes"][1]["camera"] = Value::Null
+    expect(&[("INVALID_VALUE", "/animations/0/samplers/0/interpolation")], |json, _| {
+        json["animations"][0]["samplers"][0]["interpolation"] = json!("BEZIER");
     });
-    expect(&[("VERSION", "/asset/version")], |json, _| {
-        json["asset"]["version"] = json!("2")
+    expect(&[("INVALID_VALUE", "/animations/0/channels/0/target/path")], |json, _| {
+        json["animations"][0]["channels"][0]["target"]["path"] = json!("colour");
     });
+    expect(&[("INVALID_VALUE", "/meshes/0/primitives/0/mode")], |json, _| {
+        json["meshes"][0]["primitives"][0]["mode"] = json!(7);
+    });
+    expect(&[("INVALID_VALUE", "/nodes/1/camera")], |json, _| json["nodes"][1]["camera"] = Value::Null);
+    expect(&[("VERSION", "/asset/version")], |json, _| json["asset"]["version"] = json!("2"));
     expect(&[("MISSING_VALUE", "/cameras/0")], |json, _| {
         json["cameras"] = json!([{"type": "perspective"}]);
         json["nodes"][0]["camera"] = json!(0);
@@ -310,41 +244,26 @@ fn values_that_gltf_does_not_know() {
 
 #[test]
 fn buffers_and_views() {
-    expect(
-        &[
-            ("GLB_BIN_UNUSED", "byte 1528"),
-            ("BUFFER_UNREADABLE", "/buffers/0/uri"),
-        ],
-        |json, _| {
-            json["buffers"][0]["uri"] = json!("gone.bin");
-            // Keeps the place of the BIN chunk the same whatever else changes.
-            let length = json.to_string().len();
-            json["extras"] = json!("x".repeat(1520 - 20 - length - r#","extras":"""#.len()));
-        },
-    );
-    expect(
-        &[("BUFFER_TOO_SHORT", "/buffers/0/byteLength")],
-        |json, _| {
-            json["buffers"][0]["byteLength"] = json!(9999);
-        },
-    );
+    expect(&[("GLB_BIN_UNUSED", "byte 1528"), ("BUFFER_UNREADABLE", "/buffers/0/uri")], |json, _| {
+        json["buffers"][0]["uri"] = json!("gone.bin");
+        // Keeps the place of the BIN chunk the same whatever else changes.
+        let length = json.to_string().len();
+        json["extras"] = json!("x".repeat(1520 - 20 - length - r#","extras":"""#.len()));
+    });
+    expect(&[("BUFFER_TOO_SHORT", "/buffers/0/byteLength")], |json, _| {
+        json["buffers"][0]["byteLength"] = json!(9999);
+    });
     expect(&[("VIEW_BOUNDS", "/bufferViews/4")], |json, _| {
         json["bufferViews"][4]["byteLength"] = json!(7);
     });
     expect(
-        &[
-            ("VIEW_BOUNDS", "/bufferViews/4"),
-            ("ACCESSOR_ALIGNMENT", "/accessors/4/byteOffset"),
-        ],
+        &[("VIEW_BOUNDS", "/bufferViews/4"), ("ACCESSOR_ALIGNMENT", "/accessors/4/byteOffset")],
         |json, _| {
             json["bufferViews"][4]["byteOffset"] = json!(u64::MAX);
         },
     );
     expect(
-        &[
-            ("VIEW_STRIDE", "/bufferViews/2/byteStride"),
-            ("VIEW_STRIDE", "/bufferViews/2/byteStride"),
-        ],
+        &[("VIEW_STRIDE", "/bufferViews/2/byteStride"), ("VIEW_STRIDE", "/bufferViews/2/byteStride")],
         |json, _| {
             json["bufferViews"][2]["byteStride"] = json!(2);
         },
@@ -359,20 +278,15 @@ fn morph_targets_and_cameras() {
             fewer["count"] = json!(2);
             fewer["max"] = json!([1, 0, 0]);
             json["accessors"].as_array_mut().unwrap().push(fewer);
-            json["meshes"][0]["primitives"][0]["targets"] =
-                json!([{"POSITION": 5}, {"POSITION": accessor}]);
+            json["meshes"][0]["primitives"][0]["targets"] = json!([{"POSITION": 5}, {"POSITION": accessor}]);
         }
     };
     let count = ("ATTRIBUTE_COUNT", "/meshes/0/primitives/0/targets/0");
     expect(&[count], target(2));
     let place = "/meshes/0/primitives/0/targets/1/POSITION";
-    expect(
-        &[("INDEX_OUT_OF_RANGE", place), count],
-        target((1 << 32) + 2),
-    );
+    expect(&[("INDEX_OUT_OF_RANGE", place), count], target((1 << 32) + 2));
     expect(&[("INVALID_VALUE", "/cameras/0/perspective")], |json, _| {
-        json["cameras"] =
-            json!([{"type": "perspective", "perspective": {"yfov": 1, "znear": 2, "zfar": 1}}]);
+        json["cameras"] = json!([{"type": "perspective", "perspective": {"yfov": 1, "znear": 2, "zfar": 1}}]);
         json["nodes"][0]["camera"] = json!(0);
     });
 }
@@ -393,14 +307,11 @@ fn accessors() {
     expect(&[("ACCESSOR_BOUNDS", "/accessors/4")], |json, _| {
         json["accessors"][4]["count"] = json!(u64::MAX);
     });
-    expect(
-        &[("ACCESSOR_ALIGNMENT", "/accessors/4/byteOffset")],
-        |json, bin| {
-            json["bufferViews"][4]["byteOffset"] = json!(INDICES + 1);
-            json["buffers"][0]["byteLength"] = json!(INDICES + 7);
-            bin.splice(INDICES..INDICES, [0]);
-        },
-    );
+    expect(&[("ACCESSOR_ALIGNMENT", "/accessors/4/byteOffset")], |json, bin| {
+        json["bufferViews"][4]["byteOffset"] = json!(INDICES + 1);
+        json["buffers"][0]["byteLength"] = json!(INDICES + 7);
+        bin.splice(INDICES..INDICES, [0]);
+    });
     let sparse = |index: u16| {
         move |json: &mut Value, bin: &mut Vec<u8>| {
             bin.extend([0, 0]);
@@ -419,10 +330,7 @@ fn accessors() {
         }
     };
     expect(&[], sparse(2));
-    expect(
-        &[("SPARSE_INDICES", "/accessors/3/sparse/indices")],
-        sparse(3),
-    );
+    expect(&[("SPARSE_INDICES", "/accessors/3/sparse/indices")], sparse(3));
 }
 
 #[test]
@@ -430,38 +338,24 @@ fn data_that_extensions_hold_is_not_missed() {
     let compressed = |extension: &'static str| {
         move |json: &mut Value, _: &mut Vec<u8>| {
             json["extensionsUsed"] = json!([extension]);
-            json["buffers"]
-                .as_array_mut()
-                .unwrap()
-                .push(json!({"byteLength": 36}));
+            json["buffers"].as_array_mut().unwrap().push(json!({"byteLength": 36}));
             json["bufferViews"][2] = json!({"buffer": 1, "byteLength": 36});
         }
     };
     expect(&[], compressed("EXT_meshopt_compression"));
     expect(&[], |json, _| {
         json["extensionsUsed"] = json!(["KHR_draco_mesh_compression"]);
-        json["accessors"][2]
-            .as_object_mut()
-            .unwrap()
-            .remove("bufferView");
+        json["accessors"][2].as_object_mut().unwrap().remove("bufferView");
     });
 }
 
 #[test]
 fn numbers_in_accessors() {
-    expect(&[("NOT_FINITE", "/accessors/3")], |_, bin| {
-        put(bin, 96, &[f32::NAN])
+    expect(&[("NOT_FINITE", "/accessors/3")], |_, bin| put(bin, 96, &[f32::NAN]));
+    expect(&[("NOT_FINITE", "/animations/0/samplers/0/output")], |_, bin| {
+        put(bin, ROTATIONS + 16, &[f32::INFINITY]);
     });
-    expect(
-        &[("NOT_FINITE", "/animations/0/samplers/0/output")],
-        |_, bin| {
-            put(bin, ROTATIONS + 16, &[f32::INFINITY]);
-        },
-    );
-    expect(
-        &[("NOT_FINITE", "/animations/0/samplers/0/input")],
-        |_, bin| put(bin, TIMES + 4, &[f32::NAN]),
-    );
+    expect(&[("NOT_FINITE", "/animations/0/samplers/0/input")], |_, bin| put(bin, TIMES + 4, &[f32::NAN]));
     expect(
         &[
             ("MIN_MAX_MISSING", "/animations/0/samplers/0/input"),
@@ -478,49 +372,29 @@ fn numbers_in_accessors() {
         // The next float32 after 1.
         json["accessors"][0]["max"] = json!([1.000_000_119]);
     });
-    expect(&[("MIN_MAX_WRONG", "/accessors/2/min")], |json, _| {
-        json["accessors"][2]["min"] = json!([0, 0])
-    });
+    expect(&[("MIN_MAX_WRONG", "/accessors/2/min")], |json, _| json["accessors"][2]["min"] = json!([0, 0]));
 }
 
 #[test]
 fn vertices() {
-    expect(
-        &[(
-            "ATTRIBUTE_TYPE",
-            "/meshes/0/primitives/0/attributes/TANGENT",
-        )],
-        |json, _| {
-            json["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] = json!(2);
-        },
-    );
-    expect(
-        &[("ATTRIBUTE_TYPE", "/meshes/0/primitives/0/indices")],
-        |json, _| {
-            json["accessors"][4]["normalized"] = json!(true);
-        },
-    );
-    expect(
-        &[(
-            "ATTRIBUTE_COUNT",
-            "/meshes/0/primitives/0/attributes/NORMAL",
-        )],
-        |json, _| {
-            let fewer = json!({"count": 2, "max": [1, 0, 0]});
-            let fewer = with(json["accessors"][2].clone(), fewer);
-            json["accessors"].as_array_mut().unwrap().push(fewer);
-            let primitive = &mut json["meshes"][0]["primitives"][0];
-            primitive["attributes"]["NORMAL"] = json!(4);
-            // Its indices name the third vertex.
-            primitive.as_object_mut().unwrap().remove("indices");
-            json["accessors"].as_array_mut().unwrap().remove(4);
-            json["bufferViews"].as_array_mut().unwrap().remove(4);
-        },
-    );
-    expect(
-        &[("VERTEX_INDEX", "/meshes/0/primitives/0/indices")],
-        |_, bin| bin[INDICES] = 3,
-    );
+    expect(&[("ATTRIBUTE_TYPE", "/meshes/0/primitives/0/attributes/TANGENT")], |json, _| {
+        json["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] = json!(2);
+    });
+    expect(&[("ATTRIBUTE_TYPE", "/meshes/0/primitives/0/indices")], |json, _| {
+        json["accessors"][4]["normalized"] = json!(true);
+    });
+    expect(&[("ATTRIBUTE_COUNT", "/meshes/0/primitives/0/attributes/NORMAL")], |json, _| {
+        let fewer = json!({"count": 2, "max": [1, 0, 0]});
+        let fewer = with(json["accessors"][2].clone(), fewer);
+        json["accessors"].as_array_mut().unwrap().push(fewer);
+        let primitive = &mut json["meshes"][0]["primitives"][0];
+        primitive["attributes"]["NORMAL"] = json!(4);
+        // Its indices name the third vertex.
+        primitive.as_object_mut().unwrap().remove("indices");
+        json["accessors"].as_array_mut().unwrap().remove(4);
+        json["bufferViews"].as_array_mut().unwrap().remove(4);
+    });
+    expect(&[("VERTEX_INDEX", "/meshes/0/primitives/0/indices")], |_, bin| bin[INDICES] = 3);
 }
 
 #[test]
@@ -531,18 +405,12 @@ fn the_forest_of_nodes() {
         nodes.push(json!({"name": "b", "children": [2]}));
     });
     expect(&[("NODE_TWO_PARENTS", "/nodes/2/children/0")], |json, _| {
-        json["nodes"]
-            .as_array_mut()
-            .unwrap()
-            .push(json!({"name": "second", "children": [1]}));
+        json["nodes"].as_array_mut().unwrap().push(json!({"name": "second", "children": [1]}));
         json["scenes"][0]["nodes"] = json!([0, 2]);
     });
-    expect(
-        &[("SCENE_NODE_NOT_ROOT", "/scenes/0/nodes/1")],
-        |json, _| {
-            json["scenes"][0]["nodes"] = json!([0, 1]);
-        },
-    );
+    expect(&[("SCENE_NODE_NOT_ROOT", "/scenes/0/nodes/1")], |json, _| {
+        json["scenes"][0]["nodes"] = json!([0, 1]);
+    });
 }
 
 #[test]
@@ -580,25 +448,18 @@ fn transforms_of_nodes() {
 
 #[test]
 fn names_that_viewers_change() {
-    expect(&[("DUPLICATE_NAME", "/nodes/1/name")], |json, _| {
-        json["nodes"][1]["name"] = json!("root")
-    });
+    expect(&[("DUPLICATE_NAME", "/nodes/1/name")], |json, _| json["nodes"][1]["name"] = json!("root"));
     expect(&[("DUPLICATE_NAME", "/animations/1/name")], |json, _| {
         let again = json["animations"][0].clone();
         json["animations"].as_array_mut().unwrap().push(again);
     });
-    expect(&[("NAME_TOO_LONG", "/nodes/0/name")], |json, _| {
-        json["nodes"][0]["name"] = json!("x".repeat(64))
-    });
+    expect(&[("NAME_TOO_LONG", "/nodes/0/name")], |json, _| json["nodes"][0]["name"] = json!("x".repeat(64)));
 }
 
 #[test]
 fn targets_of_channels() {
     expect(
-        &[
-            ("ANIMATION_EMPTY", "/animations/1/channels"),
-            ("ANIMATION_EMPTY", "/animations/1/samplers"),
-        ],
+        &[("ANIMATION_EMPTY", "/animations/1/channels"), ("ANIMATION_EMPTY", "/animations/1/samplers")],
         |json, _| {
             json["animations"]
                 .as_array_mut()
@@ -606,22 +467,13 @@ fn targets_of_channels() {
                 .push(json!({"name": "none", "channels": [], "samplers": []}));
         },
     );
-    expect(
-        &[("CHANNEL_WITHOUT_NODE", "/animations/0/channels/1/target")],
-        |json, _| {
-            json["animations"][0]["channels"][1]["target"] = json!({"path": "pointer"});
-        },
-    );
-    expect(
-        &[("CHANNEL_TWICE", "/animations/0/channels/2/target")],
-        |json, _| {
-            let again = json["animations"][0]["channels"][0].clone();
-            json["animations"][0]["channels"]
-                .as_array_mut()
-                .unwrap()
-                .push(again);
-        },
-    );
+    expect(&[("CHANNEL_WITHOUT_NODE", "/animations/0/channels/1/target")], |json, _| {
+        json["animations"][0]["channels"][1]["target"] = json!({"path": "pointer"});
+    });
+    expect(&[("CHANNEL_TWICE", "/animations/0/channels/2/target")], |json, _| {
+        let again = json["animations"][0]["channels"][0].clone();
+        json["animations"][0]["channels"].as_array_mut().unwrap().push(again);
+    });
     expect(
         &[
             ("WEIGHTS_WITHOUT_TARGETS", "/animations/0/channels/1/target"),
@@ -634,82 +486,49 @@ fn targets_of_channels() {
 #[test]
 fn types_and_counts_of_samplers() {
     expect(
-        &[
-            ("INPUT_TYPE", "/animations/0/samplers/0/input"),
-            ("INPUT_TYPE", "/animations/0/samplers/1/input"),
-        ],
+        &[("INPUT_TYPE", "/animations/0/samplers/0/input"), ("INPUT_TYPE", "/animations/0/samplers/1/input")],
         |json, _| {
             json["accessors"][0]["normalized"] = json!(true);
         },
     );
-    expect(
-        &[("OUTPUT_TYPE", "/animations/0/samplers/0/output")],
-        |json, _| {
-            json["animations"][0]["samplers"][0]["output"] = json!(3);
-            json["animations"][0]["samplers"][1]["output"] = json!(1);
-            json["animations"][0]["channels"]
-                .as_array_mut()
-                .unwrap()
-                .remove(1);
-            json["animations"][0]["samplers"]
-                .as_array_mut()
-                .unwrap()
-                .remove(1);
-            json["nodes"][0]["extras"] = json!(0);
-            json["accessors"][1] = json!({"componentType": 5126, "type": "VEC3", "count": 3});
-            json["meshes"][0]["primitives"][0]["targets"] = json!([{"POSITION": 1}]);
-            json["bufferViews"][1]["byteLength"] = json!(1);
-            json["images"] = json!([{"bufferView": 1}]);
-            json["textures"] = json!([{"source": 0}]);
-            json["materials"] = json!([{"normalTexture": {"index": 0}}]);
-            json["meshes"][0]["primitives"][0]["material"] = json!(0);
-        },
-    );
-    expect(
-        &[("OUTPUT_COUNT", "/animations/0/samplers/0/output")],
-        |json, _| {
-            json["accessors"][1]["count"] = json!(2);
-        },
-    );
-    expect(
-        &[("OUTPUT_COUNT", "/animations/0/samplers/0/output")],
-        |json, _| {
-            json["animations"][0]["samplers"][0]["interpolation"] = json!("CUBICSPLINE");
-        },
-    );
-    expect(
-        &[("CUBICSPLINE_ONE_KEY", "/animations/0/samplers/0/input")],
-        |json, bin| {
-            json["animations"][0]["samplers"]
-                .as_array_mut()
-                .unwrap()
-                .truncate(1);
-            json["animations"][0]["channels"]
-                .as_array_mut()
-                .unwrap()
-                .truncate(1);
-            json["animations"][0]["samplers"][0]["interpolation"] = json!("CUBICSPLINE");
-            json["accessors"][0]["count"] = json!(1);
-            json["accessors"][0]["max"] = json!([0]);
-            json["meshes"][0]["primitives"][0]["targets"] = json!([{"POSITION": 3}]);
-            put(bin, ROTATIONS + 16, &[0.0, 0.0, 0.0, 1.0]);
-        },
-    );
-    expect(
-        &[("SAMPLER_STRIDE", "/animations/0/samplers/0/output")],
-        |json, _| {
-            json["bufferViews"][1]["byteStride"] = json!(16);
-        },
-    );
+    expect(&[("OUTPUT_TYPE", "/animations/0/samplers/0/output")], |json, _| {
+        json["animations"][0]["samplers"][0]["output"] = json!(3);
+        json["animations"][0]["samplers"][1]["output"] = json!(1);
+        json["animations"][0]["channels"].as_array_mut().unwrap().remove(1);
+        json["animations"][0]["samplers"].as_array_mut().unwrap().remove(1);
+        json["nodes"][0]["extras"] = json!(0);
+        json["accessors"][1] = json!({"componentType": 5126, "type": "VEC3", "count": 3});
+        json["meshes"][0]["primitives"][0]["targets"] = json!([{"POSITION": 1}]);
+        json["bufferViews"][1]["byteLength"] = json!(1);
+        json["images"] = json!([{"bufferView": 1}]);
+        json["textures"] = json!([{"source": 0}]);
+        json["materials"] = json!([{"normalTexture": {"index": 0}}]);
+        json["meshes"][0]["primitives"][0]["material"] = json!(0);
+    });
+    expect(&[("OUTPUT_COUNT", "/animations/0/samplers/0/output")], |json, _| {
+        json["accessors"][1]["count"] = json!(2);
+    });
+    expect(&[("OUTPUT_COUNT", "/animations/0/samplers/0/output")], |json, _| {
+        json["animations"][0]["samplers"][0]["interpolation"] = json!("CUBICSPLINE");
+    });
+    expect(&[("CUBICSPLINE_ONE_KEY", "/animations/0/samplers/0/input")], |json, bin| {
+        json["animations"][0]["samplers"].as_array_mut().unwrap().truncate(1);
+        json["animations"][0]["channels"].as_array_mut().unwrap().truncate(1);
+        json["animations"][0]["samplers"][0]["interpolation"] = json!("CUBICSPLINE");
+        json["accessors"][0]["count"] = json!(1);
+        json["accessors"][0]["max"] = json!([0]);
+        json["meshes"][0]["primitives"][0]["targets"] = json!([{"POSITION": 3}]);
+        put(bin, ROTATIONS + 16, &[0.0, 0.0, 0.0, 1.0]);
+    });
+    expect(&[("SAMPLER_STRIDE", "/animations/0/samplers/0/output")], |json, _| {
+        json["bufferViews"][1]["byteStride"] = json!(16);
+    });
 }
 
 #[test]
 fn a_sampler_must_suit_all_its_channels() {
     expect(
-        &[
-            ("OUTPUT_TYPE", "/animations/0/samplers/0/output"),
-            ("UNUSED_OBJECT", "/animations/0/samplers/1"),
-        ],
+        &[("OUTPUT_TYPE", "/animations/0/samplers/0/output"), ("UNUSED_OBJECT", "/animations/0/samplers/1")],
         |json, _| json["animations"][0]["channels"][1]["sampler"] = json!(0),
     );
 }
@@ -745,16 +564,11 @@ fn rotations_in_keys() {
         [half.sin(), 0.0, 0.0, half.cos()]
     };
     let second = |expected: &[(&str, &str)], q: [f32; 4]| {
-        expect(expected, |_, bin| {
-            put(bin, ROTATIONS + 16, &[q, q].concat())
-        });
+        expect(expected, |_, bin| put(bin, ROTATIONS + 16, &[q, q].concat()));
     };
     second(&[], turn(17.99));
     second(&[], turn(17.99).map(|x| x * 1.000_009));
-    second(
-        &[("ROTATION_NOT_UNIT", output)],
-        turn(17.99).map(|x| x * 1.000_02),
-    );
+    second(&[("ROTATION_NOT_UNIT", output)], turn(17.99).map(|x| x * 1.000_02));
     second(&[("ROTATION_NOT_UNIT", output)], [0.0; 4]);
     second(&[("ROTATION_SIGN_FLIP", output)], turn(5.0).map(|x| -x));
     second(&[("ROTATION_LARGE_STEP", output)], turn(18.1));
@@ -785,33 +599,18 @@ fn rotations_in_sixteen_bits_may_be_a_code_step_off() {
         }
     };
     expect(&[], shorts(0));
-    expect(
-        &[("ROTATION_NOT_UNIT", "/animations/0/samplers/0/output")],
-        shorts(4),
-    );
+    expect(&[("ROTATION_NOT_UNIT", "/animations/0/samplers/0/output")], shorts(4));
 }
 
 #[test]
 fn what_is_not_used() {
-    expect(
-        &[("UNUSED_OBJECT", "/animations/0/samplers/1")],
-        |json, _| {
-            json["animations"][0]["channels"]
-                .as_array_mut()
-                .unwrap()
-                .pop();
-        },
-    );
-    expect(
-        &[
-            ("UNUSED_OBJECT", "/nodes/2"),
-            ("UNUSED_OBJECT", "/materials/0"),
-        ],
-        |json, _| {
-            json["nodes"].as_array_mut().unwrap().push(json!({}));
-            json["materials"] = json!([{}]);
-        },
-    );
+    expect(&[("UNUSED_OBJECT", "/animations/0/samplers/1")], |json, _| {
+        json["animations"][0]["channels"].as_array_mut().unwrap().pop();
+    });
+    expect(&[("UNUSED_OBJECT", "/nodes/2"), ("UNUSED_OBJECT", "/materials/0")], |json, _| {
+        json["nodes"].as_array_mut().unwrap().push(json!({}));
+        json["materials"] = json!([{}]);
+    });
 }
 
 #[test]
@@ -826,15 +625,9 @@ fn lengths_of_channels_and_clips() {
         accessors.extend([times, values]);
         json!({"input": 5, "output": 6})
     };
-    expect(
-        &[
-            ("CHANNEL_LENGTHS", "/animations/0"),
-            ("UNUSED_OBJECT", "/accessors/3"),
-        ],
-        |json, _| {
-            json["animations"][0]["samplers"][1] = shorter(json);
-        },
-    );
+    expect(&[("CHANNEL_LENGTHS", "/animations/0"), ("UNUSED_OBJECT", "/accessors/3")], |json, _| {
+        json["animations"][0]["samplers"][1] = shorter(json);
+    });
     expect(&[("CLIP_LENGTHS", "/animations")], |json, _| {
         let sampler = shorter(json);
         let channel = json["animations"][0]["channels"][1].clone();
@@ -848,60 +641,40 @@ fn a_million_bad_keys_are_one_finding() {
     let keys = 100_000;
     let times: Vec<f32> = (0..keys).map(|i| i as f32 / 64.0).collect();
     let rotations = [0.0, 0.0, 0.0, 2.0].repeat(keys);
-    expect(
-        &[("ROTATION_NOT_UNIT", "/animations/0/samplers/0/output")],
-        |json, bin| {
-            let start = bin.len().next_multiple_of(4);
-            bin.resize(start, 0);
-            bin.extend(bytes(&times));
-            bin.extend(bytes(&rotations));
-            json["buffers"][0]["byteLength"] = json!(bin.len());
-            json["bufferViews"][0] =
-                json!({"buffer": 0, "byteOffset": start, "byteLength": 4 * keys});
-            json["bufferViews"][1] =
-                json!({"buffer": 0, "byteOffset": start + 4 * keys, "byteLength": 16 * keys});
-            json["accessors"][0]["count"] = json!(keys);
-            json["accessors"][0]["max"] = json!([times[keys - 1]]);
-            json["accessors"][1]["count"] = json!(keys);
-            json["animations"][0]["channels"]
-                .as_array_mut()
-                .unwrap()
-                .pop();
-            json["animations"][0]["samplers"]
-                .as_array_mut()
-                .unwrap()
-                .pop();
-            json["meshes"][0]["primitives"][0]["targets"] = json!([{"POSITION": 3}]);
-        },
-    );
+    expect(&[("ROTATION_NOT_UNIT", "/animations/0/samplers/0/output")], |json, bin| {
+        let start = bin.len().next_multiple_of(4);
+        bin.resize(start, 0);
+        bin.extend(bytes(&times));
+        bin.extend(bytes(&rotations));
+        json["buffers"][0]["byteLength"] = json!(bin.len());
+        json["bufferViews"][0] = json!({"buffer": 0, "byteOffset": start, "byteLength": 4 * keys});
+        json["bufferViews"][1] =
+            json!({"buffer": 0, "byteOffset": start + 4 * keys, "byteLength": 16 * keys});
+        json["accessors"][0]["count"] = json!(keys);
+        json["accessors"][0]["max"] = json!([times[keys - 1]]);
+        json["accessors"][1]["count"] = json!(keys);
+        json["animations"][0]["channels"].as_array_mut().unwrap().pop();
+        json["animations"][0]["samplers"].as_array_mut().unwrap().pop();
+        json["meshes"][0]["primitives"][0]["targets"] = json!([{"POSITION": 3}]);
+    });
 }
 
 #[test]
 fn reports_count_what_they_leave_out() {
     let mut report = Report::default();
     for i in 0..250 {
-        report.add(
-            Code::UnusedObject,
-            format!("/nodes/{i}"),
-            "nothing refers to it",
-        );
+        report.add(Code::UnusedObject, format!("/nodes/{i}"), "nothing refers to it");
     }
     report.add(Code::NodeCycle, "/nodes/1", "goes round");
     assert_eq!(report.findings().len(), 101);
-    assert_eq!(
-        (report.count(Severity::Info), report.count(Severity::Error)),
-        (250, 1)
-    );
+    assert_eq!((report.count(Severity::Info), report.count(Severity::Error)), (250, 1));
     assert_eq!(report.worst(), Some(Severity::Error));
-    assert!(
-        report
-            .text("F")
-            .ends_with("F: info UNUSED_OBJECT: and 150 more of this kind\n")
-    );
+    assert!(report.text("F").ends_with("F: info UNUSED_OBJECT: and 150 more of this kind\n"));
     let json = report.to_json();
     assert_eq!(json["schema"], 1);
     assert_eq!(json["left_out"]["UNUSED_OBJECT"], 150);
-    let cycle = json!({"code": "NODE_CYCLE", "severity": "error", "pointer": "/nodes/1", "message": "goes round"});
+    let cycle =
+        json!({"code": "NODE_CYCLE", "severity": "error", "pointer": "/nodes/1", "message": "goes round"});
     assert_eq!(json["findings"][100], cycle);
 }
 
@@ -909,12 +682,7 @@ fn reports_count_what_they_leave_out() {
 fn every_code_has_a_file_that_is_broken_so() {
     let source: String = include_str!("tests.rs").split_whitespace().collect();
     // These come from comparing and from looking, which is done elsewhere.
-    let elsewhere = [
-        "MOTION_DIFFERS",
-        "INPUT_CHANGED",
-        "NOTHING_VISIBLE",
-        "NOTHING_MOVES",
-    ];
+    let elsewhere = ["MOTION_DIFFERS", "INPUT_CHANGED", "NOTHING_VISIBLE", "NOTHING_MOVES"];
     for code in Code::ALL.iter().map(|code| code.as_str()) {
         let expected = source.contains(&format!("(\"{code}\","));
         assert!(expected || elsewhere.contains(&code), "{code}");
@@ -967,17 +735,8 @@ fn changed_digits_are_survived() {
     let (json, bin) = good();
     let text = json.to_string();
     for (at, _) in text.match_indices(|c: char| c.is_ascii_digit()) {
-        for new in [
-            "9",
-            "99",
-            "4294967295",
-            "4294967296",
-            "18446744073709551615",
-            "-1",
-            "0.5",
-            "null",
-            "[]",
-        ] {
+        for new in ["9", "99", "4294967295", "4294967296", "18446744073709551615", "-1", "0.5", "null", "[]"]
+        {
             let changed = format!("{}{new}{}", &text[..at], &text[at + 1..]);
             if let Ok(json) = serde_json::from_str(&changed) {
                 survives(glb(&json, &bin));

@@ -45,11 +45,7 @@ pub(super) fn check(root: &Root, report: &mut Report) {
     for Marks { list, used } in lists {
         let unused = used.iter().enumerate().filter(|(_, used)| !**used);
         for (index, _) in unused {
-            report.add(
-                Code::UnusedObject,
-                format!("/{list}/{index}"),
-                "nothing refers to it; leave it out",
-            );
+            report.add(Code::UnusedObject, format!("/{list}/{index}"), "nothing refers to it; leave it out");
         }
     }
     for (a, animation) in root.animations.iter().enumerate() {
@@ -67,23 +63,9 @@ pub(super) fn check(root: &Root, report: &mut Report) {
 
 fn nodes(root: &Root) -> Marks {
     let mut marks = Marks::new("nodes", root.nodes.len());
-    marks.mark(
-        root.scenes
-            .iter()
-            .flat_map(|scene| scene.nodes.iter().copied()),
-    );
-    marks.mark(
-        root.nodes
-            .iter()
-            .filter_map(|node| node.children.as_ref())
-            .flatten()
-            .copied(),
-    );
-    marks.mark(
-        root.skins
-            .iter()
-            .flat_map(|skin| skin.joints.iter().copied()),
-    );
+    marks.mark(root.scenes.iter().flat_map(|scene| scene.nodes.iter().copied()));
+    marks.mark(root.nodes.iter().filter_map(|node| node.children.as_ref()).flatten().copied());
+    marks.mark(root.skins.iter().flat_map(|skin| skin.joints.iter().copied()));
     marks
 }
 
@@ -117,12 +99,7 @@ fn textures(root: &Root) -> Marks {
     for material in &root.materials {
         let surface = &material.pbr_metallic_roughness;
         marks.mark(surface.base_color_texture.as_ref().map(|info| info.index));
-        marks.mark(
-            surface
-                .metallic_roughness_texture
-                .as_ref()
-                .map(|info| info.index),
-        );
+        marks.mark(surface.metallic_roughness_texture.as_ref().map(|info| info.index));
         marks.mark(material.normal_texture.as_ref().map(|info| info.index));
         marks.mark(material.occlusion_texture.as_ref().map(|info| info.index));
         marks.mark(material.emissive_texture.as_ref().map(|info| info.index));
@@ -142,37 +119,18 @@ fn accessors(root: &Root) -> Marks {
     marks.mark(primitives().flat_map(|primitive| primitive.attributes.values().copied()));
     marks.mark(primitives().filter_map(|primitive| primitive.indices));
     for target in primitives().flat_map(|primitive| primitive.targets.iter().flatten()) {
-        marks.mark(
-            [target.positions, target.normals, target.tangents]
-                .into_iter()
-                .flatten(),
-        );
+        marks.mark([target.positions, target.normals, target.tangents].into_iter().flatten());
     }
-    let samplers = root
-        .animations
-        .iter()
-        .flat_map(|animation| &animation.samplers);
+    let samplers = root.animations.iter().flat_map(|animation| &animation.samplers);
     marks.mark(samplers.flat_map(|sampler| [sampler.input, sampler.output]));
-    marks.mark(
-        root.skins
-            .iter()
-            .filter_map(|skin| skin.inverse_bind_matrices),
-    );
+    marks.mark(root.skins.iter().filter_map(|skin| skin.inverse_bind_matrices));
     marks
 }
 
 fn views(root: &Root) -> Marks {
     let mut marks = Marks::new("bufferViews", root.buffer_views.len());
-    marks.mark(
-        root.accessors
-            .iter()
-            .filter_map(|accessor| accessor.buffer_view),
-    );
-    for sparse in root
-        .accessors
-        .iter()
-        .filter_map(|accessor| accessor.sparse.as_ref())
-    {
+    marks.mark(root.accessors.iter().filter_map(|accessor| accessor.buffer_view));
+    for sparse in root.accessors.iter().filter_map(|accessor| accessor.sparse.as_ref()) {
         marks.mark([sparse.indices.buffer_view, sparse.values.buffer_view]);
     }
     marks.mark(root.images.iter().filter_map(|image| image.buffer_view));

@@ -39,12 +39,7 @@ struct Uses<'a> {
 
 pub(super) fn check(root: &Root, report: &mut Report) {
     strides(root, report);
-    let mut uses = Uses {
-        root,
-        first: BTreeMap::new(),
-        mixed: BTreeSet::new(),
-        report,
-    };
+    let mut uses = Uses { root, first: BTreeMap::new(), mixed: BTreeSet::new(), report };
     uses.meshes();
     uses.animations();
     for (s, skin) in root.skins.iter().enumerate() {
@@ -72,9 +67,7 @@ impl Uses<'_> {
             for (p, primitive) in mesh.primitives.iter().enumerate() {
                 let place = format!("/meshes/{m}/primitives/{p}");
                 let targets = primitive.targets.iter().flatten();
-                let targets = targets
-                    .flat_map(|t| [t.positions, t.normals, t.tangents])
-                    .flatten();
+                let targets = targets.flat_map(|t| [t.positions, t.normals, t.tangents]).flatten();
                 for accessor in primitive.attributes.values().copied().chain(targets) {
                     self.accessor(accessor, Use::Vertices, &place);
                 }
@@ -96,20 +89,14 @@ impl Uses<'_> {
     }
 
     fn accessor(&mut self, accessor: Index<Accessor>, used: Use, place: &str) {
-        let view = self
-            .root
-            .get(accessor)
-            .and_then(|stored| stored.buffer_view);
+        let view = self.root.get(accessor).and_then(|stored| stored.buffer_view);
         if let Some(view) = view {
             self.view(view.value(), used, place);
         }
     }
 
     fn view(&mut self, view: usize, used: Use, place: &str) {
-        let first = self
-            .first
-            .entry(view)
-            .or_insert_with(|| (used, place.to_owned()));
+        let first = self.first.entry(view).or_insert_with(|| (used, place.to_owned()));
         if first.0 == used || !self.mixed.insert(view) {
             return;
         }
@@ -117,10 +104,7 @@ impl Uses<'_> {
         self.report.add(
             Code::ViewUses,
             format!("/bufferViews/{view}"),
-            format!(
-                "holds {before} for {by} and {} for {place}; give each its own view",
-                used.name()
-            ),
+            format!("holds {before} for {by} and {} for {place}; give each its own view", used.name()),
         );
     }
 }

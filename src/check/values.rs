@@ -68,24 +68,14 @@ pub(super) fn check(
 }
 
 /// Indices of sparse elements rise and stay within the accessor.
-fn sparse_indices(
-    shared: &Shared<'_>,
-    shape: &Shape,
-    place: &str,
-    report: &mut Report,
-) -> Result<(), Error> {
+fn sparse_indices(shared: &Shared<'_>, shape: &Shape, place: &str, report: &mut Report) -> Result<(), Error> {
     let indices = shared.asset().sparse_indices(shape)?;
-    let beyond = indices
-        .last()
-        .is_some_and(|&last| last as usize >= shape.count);
+    let beyond = indices.last().is_some_and(|&last| last as usize >= shape.count);
     if beyond || !indices.is_sorted_by(|a, b| a < b) {
         report.add(
             Code::SparseIndices,
             format!("{place}/sparse/indices"),
-            format!(
-                "must rise from each to the next and stay below {}",
-                shape.count
-            ),
+            format!("must rise from each to the next and stay below {}", shape.count),
         );
     }
     Ok(())
@@ -114,9 +104,5 @@ fn same(stated: &Value, found: &[f32]) -> bool {
         return false;
     };
     let number = |value: &Value| value.as_f64().map(|x| x as f32);
-    stated.len() == found.len()
-        && stated
-            .iter()
-            .zip(found)
-            .all(|(value, x)| number(value) == Some(*x))
+    stated.len() == found.len() && stated.iter().zip(found).all(|(value, x)| number(value) == Some(*x))
 }

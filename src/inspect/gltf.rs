@@ -108,20 +108,13 @@ fn summary(root: &Root, clip: &Clip) -> ClipSummary {
     let stored = &root.animations[clip.animation];
     let mut interpolations = BTreeMap::new();
     for channel in &clip.channels {
-        *interpolations
-            .entry(name(channel.interpolation))
-            .or_default() += 1;
+        *interpolations.entry(name(channel.interpolation)).or_default() += 1;
     }
     let extras = stored.extras.as_ref();
     ClipSummary {
         name: clip.name.clone(),
         channels: stored.channels.len(),
-        keys: clip
-            .channels
-            .iter()
-            .map(|channel| channel.keys)
-            .max()
-            .unwrap_or(0),
+        keys: clip.channels.iter().map(|channel| channel.keys).max().unwrap_or(0),
         duration: clip.duration,
         interpolations,
         extras: extras.and_then(|extras| serde_json::from_str(extras.get()).ok()),
@@ -146,11 +139,7 @@ fn tree(root: &Root) -> Vec<TreeNode> {
     let mut tree = Vec::new();
     // A node may be listed twice in a broken file, even below itself.
     let mut shown = vec![false; root.nodes.len()];
-    let mut open: Vec<_> = roots(root)
-        .into_iter()
-        .rev()
-        .map(|node| (node, 0))
-        .collect();
+    let mut open: Vec<_> = roots(root).into_iter().rev().map(|node| (node, 0)).collect();
     while let Some((index, depth)) = open.pop() {
         let Some(node) = root.nodes.get(index) else {
             continue;
@@ -187,12 +176,7 @@ fn roots(root: &Root) -> Vec<usize> {
         return scene.nodes.iter().map(value).collect();
     }
     let mut child = vec![false; root.nodes.len()];
-    for index in root
-        .nodes
-        .iter()
-        .filter_map(|node| node.children.as_ref())
-        .flatten()
-    {
+    for index in root.nodes.iter().filter_map(|node| node.children.as_ref()).flatten() {
         if let Some(child) = child.get_mut(index.value()) {
             *child = true;
         }
@@ -209,11 +193,8 @@ enum Use {
 }
 
 fn parts(asset: &mut Asset) -> Parts {
-    let mut parts = Parts {
-        total: asset.container().length(),
-        json: asset.json().len() as u64,
-        ..Parts::default()
-    };
+    let mut parts =
+        Parts { total: asset.container().length(), json: asset.json().len() as u64, ..Parts::default() };
     for buffer in 0..asset.root().buffers.len() {
         match &asset.root().buffers[buffer].uri {
             Some(uri) if uri.starts_with("data:") => {
@@ -235,18 +216,9 @@ fn parts(asset: &mut Asset) -> Parts {
     }
     for image in &root.images {
         let view = image.buffer_view.and_then(|view| root.get(view));
-        parts.images = parts
-            .images
-            .saturating_add(view.map_or(0, |view| view.byte_length.0));
+        parts.images = parts.images.saturating_add(view.map_or(0, |view| view.byte_length.0));
     }
-    let Parts {
-        json,
-        meshes,
-        animation_times,
-        animation_values,
-        images,
-        ..
-    } = parts;
+    let Parts { json, meshes, animation_times, animation_values, images, .. } = parts;
     let named = [json, meshes, animation_times, animation_values, images];
     parts.other = named.into_iter().fold(parts.total, u64::saturating_sub);
     parts
@@ -257,19 +229,13 @@ fn uses(root: &Root) -> BTreeMap<usize, Use> {
     let mut uses = BTreeMap::new();
     for primitive in root.meshes.iter().flat_map(|mesh| &mesh.primitives) {
         let targets = primitive.targets.iter().flatten();
-        let targets = targets
-            .flat_map(|t| [t.positions, t.normals, t.tangents])
-            .flatten();
+        let targets = targets.flat_map(|t| [t.positions, t.normals, t.tangents]).flatten();
         let attributes = primitive.attributes.values().copied();
         for accessor in attributes.chain(targets).chain(primitive.indices) {
             uses.insert(accessor.value(), Use::Mesh);
         }
     }
-    for sampler in root
-        .animations
-        .iter()
-        .flat_map(|animation| &animation.samplers)
-    {
+    for sampler in root.animations.iter().flat_map(|animation| &animation.samplers) {
         uses.insert(sampler.output.value(), Use::Values);
         uses.insert(sampler.input.value(), Use::Times);
     }
@@ -281,25 +247,17 @@ fn data_length(root: &Root, accessor: usize) -> u64 {
     let Some(stored) = root.accessors.get(accessor) else {
         return 0;
     };
-    let (Checked::Valid(kind), Checked::Valid(component)) = (&stored.type_, &stored.component_type)
-    else {
+    let (Checked::Valid(kind), Checked::Valid(component)) = (&stored.type_, &stored.component_type) else {
         return 0;
     };
     let view = stored.buffer_view.and_then(|view| root.get(view));
-    let claimed = Layout::new(*kind, component.0)
-        .stride()
-        .saturating_mul(stored.count.0);
+    let claimed = Layout::new(*kind, component.0).stride().saturating_mul(stored.count.0);
     view.map_or(0, |view| view.byte_length.0.min(claimed))
 }
 
 impl fmt::Display for GltfSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            kind,
-            version,
-            bytes,
-            ..
-        } = self;
+        let Self { kind, version, bytes, .. } = self;
         write!(f, "glTF {version} (.{kind}), {} bytes", bytes.total)?;
         if let Some(generator) = &self.generator {
             write!(f, ", made by {generator}")?;
@@ -344,11 +302,7 @@ impl fmt::Display for ClipSummary {
         let name = self.name.as_deref().unwrap_or("(no name)");
         // The file's times are float32: more digits would be noise.
         let seconds = self.duration as f32;
-        write!(
-            f,
-            "  {name}: {} channels, {} keys, {seconds} s",
-            self.channels, self.keys
-        )?;
+        write!(f, "  {name}: {} channels, {} keys, {seconds} s", self.channels, self.keys)?;
         for (interpolation, channels) in &self.interpolations {
             write!(f, ", {channels} {interpolation}")?;
         }
@@ -394,10 +348,7 @@ mod tests {
         let values = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
         let found = gltf(&mut animated("rotation", "LINEAR", &[0.0, 0.1], &values));
         assert_eq!(found.kind, "glb");
-        assert_eq!(
-            (found.bytes.animation_times, found.bytes.animation_values),
-            (8, 32)
-        );
+        assert_eq!((found.bytes.animation_times, found.bytes.animation_values), (8, 32));
         // The header, two chunk headers, and spaces after the JSON.
         assert!((28..32).contains(&found.bytes.other), "{:?}", found.bytes);
         let text = found.to_string();
@@ -405,28 +356,17 @@ mod tests {
             text.contains("\n  (node 0)\nclips: 1\n  clip: 1 channels, 2 keys, 0.1 s, 1 LINEAR\n"),
             "{text}"
         );
-        assert_eq!(
-            serde_json::to_value(&found).unwrap()["clips"][0]["interpolations"]["LINEAR"],
-            1
-        );
+        assert_eq!(serde_json::to_value(&found).unwrap()["clips"][0]["interpolations"]["LINEAR"], 1);
     }
 
     #[test]
     fn trees_are_shortened() {
-        let chain: Vec<_> = (1..=500)
-            .map(|i| {
-                if i < 500 {
-                    json!({"children": [i]})
-                } else {
-                    json!({})
-                }
-            })
-            .collect();
+        let chain: Vec<_> =
+            (1..=500).map(|i| if i < 500 { json!({"children": [i]}) } else { json!({}) }).collect();
         let found = nodes(Value::from(chain));
         assert_eq!(found.len(), LEVELS);
         assert_eq!(found[LEVELS - 1].hidden, 1);
-        let mut wide =
-            vec![json!({"name": "top", "camera": 0, "children": (1..=20).collect::<Vec<_>>()})];
+        let mut wide = vec![json!({"name": "top", "camera": 0, "children": (1..=20).collect::<Vec<_>>()})];
         wide.resize(21, json!({"mesh": 0}));
         let found = nodes(Value::from(wide));
         assert_eq!((found.len(), found[0].hidden), (1 + CHILDREN, 12));

@@ -86,11 +86,7 @@ mod tests {
     fn the_curve_is_srgbs() {
         for i in 0..=255_u8 {
             let srgb = f64::from(i) / 255.0;
-            let expected = if srgb <= 0.04045 {
-                srgb / 12.92
-            } else {
-                ((srgb + 0.055) / 1.055).powf(2.4)
-            };
+            let expected = if srgb <= 0.04045 { srgb / 12.92 } else { ((srgb + 0.055) / 1.055).powf(2.4) };
             assert!((f64::from(LINEAR[i as usize]) - expected).abs() < 1e-7);
         }
     }
@@ -106,11 +102,8 @@ mod tests {
     fn every_light_gets_the_nearest_level() {
         for i in 0..=100_000 {
             let linear = f64::from(i) / 1e5;
-            let srgb = if linear <= 0.003_130_8 {
-                linear * 12.92
-            } else {
-                1.055 * linear.powf(1.0 / 2.4) - 0.055
-            };
+            let srgb =
+                if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
             let level = f64::from(encode(linear as f32));
             assert!((level - srgb * 255.0).abs() < 0.5 + 1e-3, "{linear}");
         }

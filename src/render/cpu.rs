@@ -23,9 +23,7 @@ const CHUNK: usize = 4096;
 /// Draws the parts of a scene.
 pub(crate) fn draw(scene: &Scene) -> Layer {
     let (width, height) = scene.size;
-    let placed: Vec<Placed> = (0..scene.draws.len())
-        .map(|i| Placed::new(scene, i))
-        .collect();
+    let placed: Vec<Placed> = (0..scene.draws.len()).map(|i| Placed::new(scene, i)).collect();
     let triangles = set_up(&placed);
     let bands = sort_into_bands(&triangles, height);
     let mut layer = Layer::new(width, height);
@@ -46,12 +44,7 @@ pub(crate) fn draw(scene: &Scene) -> Layer {
 fn set_up(placed: &[Placed]) -> Vec<Triangle> {
     let chunks: Vec<(&Placed, &[u32])> = placed
         .iter()
-        .flat_map(|p| {
-            p.part
-                .indices
-                .chunks(CHUNK * 3)
-                .map(move |indices| (p, indices))
-        })
+        .flat_map(|p| p.part.indices.chunks(CHUNK * 3).map(move |indices| (p, indices)))
         .collect();
     let triangles = |(placed, indices): &(&Placed, &[u32])| {
         let mut out = Vec::with_capacity(indices.len() / 3);
@@ -59,11 +52,7 @@ fn set_up(placed: &[Placed]) -> Vec<Triangle> {
         corners.iter().for_each(|v| placed.set_up(*v, &mut out));
         out
     };
-    chunks
-        .par_iter()
-        .map(triangles)
-        .collect::<Vec<_>>()
-        .concat()
+    chunks.par_iter().map(triangles).collect::<Vec<_>>().concat()
 }
 
 /// For each band of rows the triangles that reach into it.
@@ -153,15 +142,7 @@ impl Band {
     }
 
     #[inline(always)]
-    fn pixel(
-        &mut self,
-        at: usize,
-        inside: u8,
-        raster: &Raster,
-        x: usize,
-        y: usize,
-        edges: [i64; 3],
-    ) {
+    fn pixel(&mut self, at: usize, inside: u8, raster: &Raster, x: usize, y: usize, edges: [i64; 3]) {
         let depth = raster.depth_at(x, y);
         let seen = |s: &usize| inside >> s & 1 == 1 && depth[*s] > self.depth[at][*s];
         let seen = (0..4).filter(seen).fold(0_u8, |mask, s| mask | 1 << s);
@@ -200,12 +181,7 @@ fn mean(samples: &[[f32; 4]; 4]) -> [u8; 4] {
     if alpha == 0.0 {
         return [0; 4];
     }
-    [
-        encode(red),
-        encode(green),
-        encode(blue),
-        (alpha * 255.0 + 0.5) as u8,
-    ]
+    [encode(red), encode(green), encode(blue), (alpha * 255.0 + 0.5) as u8]
 }
 
 /// A triangle made ready for its pixels.
@@ -317,8 +293,7 @@ impl<'a> Raster<'a> {
     /// perspective.
     fn weights(&self, edges: [i64; 3]) -> [f32; 3] {
         let inverse_w = self.triangle.inverse_w;
-        let part: [f32; 3] =
-            std::array::from_fn(|k| edges[k] as f32 * self.inverse_area * inverse_w[k]);
+        let part: [f32; 3] = std::array::from_fn(|k| edges[k] as f32 * self.inverse_area * inverse_w[k]);
         let sum = part[0] + part[1] + part[2];
         let share = part.map(|p| p / sum);
         let Some(cut) = &self.triangle.cut else {

@@ -48,8 +48,6 @@ fn known(clips: &[String]) -> String {
 
 impl Error {
     pub(crate) fn adapter(reason: impl std::fmt::Display) -> Self {
-        Error::Adapter {
-            reason: reason.to_string(),
-        }
+        Error::Adapter { reason: reason.to_string() }
     }
 }

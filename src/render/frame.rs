@@ -77,8 +77,8 @@ impl Framing {
             self.add(DVec3::ZERO);
         }
         let [right, left, top, bottom] = self.edges;
-        let wanted = ((right + left) / (2.0 * self.tan.0 * FILL))
-            .max((top + bottom) / (2.0 * self.tan.1 * FILL));
+        let wanted =
+            ((right + left) / (2.0 * self.tan.0 * FILL)).max((top + bottom) / (2.0 * self.tan.1 * FILL));
         let least = self.least_distance();
         let depth = wanted.max(self.high.z + least);
         let eye = DVec3::new((right - left) / 2.0, (top - bottom) / 2.0, depth);
@@ -169,47 +169,24 @@ mod tests {
     #[test]
     fn all_points_fill_the_view_and_stay_inside() {
         for size in [(512, 512), (640, 360), (90, 400), (1, 1)] {
-            for (scale, offset) in [
-                (1.0, 0.0),
-                (1e-12, 0.0),
-                (1e12, 0.0),
-                (1e9, 1e12),
-                (3.0, -700.0),
-            ] {
+            for (scale, offset) in [(1.0, 0.0), (1e-12, 0.0), (1e12, 0.0), (1e9, 1e12), (3.0, -700.0)] {
                 let points = cloud(scale, offset);
                 let frame = framed(&points, size);
                 let seen: Vec<DVec3> = points.iter().map(|p| project(&frame, *p)).collect();
-                let most = seen
-                    .iter()
-                    .map(|p| p.x.abs().max(p.y.abs()))
-                    .fold(0.0, f64::max);
-                assert!(
-                    (most - FILL).abs() < 1e-3,
-                    "{size:?} {scale} {offset}: {most}"
-                );
-                assert!(
-                    seen.iter().all(|p| p.z > 0.0 && p.z <= 1.0),
-                    "{size:?} {scale}"
-                );
+                let most = seen.iter().map(|p| p.x.abs().max(p.y.abs())).fold(0.0, f64::max);
+                assert!((most - FILL).abs() < 1e-3, "{size:?} {scale} {offset}: {most}");
+                assert!(seen.iter().all(|p| p.z > 0.0 && p.z <= 1.0), "{size:?} {scale}");
             }
         }
     }
 
     #[test]
     fn nothing_and_a_single_point_have_a_camera() {
-        for points in [
-            vec![],
-            vec![DVec3::ZERO],
-            vec![DVec3::splat(1e12)],
-            vec![DVec3::splat(1e-300)],
-        ] {
+        for points in [vec![], vec![DVec3::ZERO], vec![DVec3::splat(1e12)], vec![DVec3::splat(1e-300)]] {
             let frame = framed(&points, (512, 512));
             let target = points.first().copied().unwrap_or_default();
             let seen = project(&frame, target);
-            assert!(
-                seen.is_finite() && seen.xy_length() < 1e-3,
-                "{points:?}: {seen}"
-            );
+            assert!(seen.is_finite() && seen.xy_length() < 1e-3, "{points:?}: {seen}");
             assert!(seen.z > 0.0 && seen.z <= 1.0);
         }
     }

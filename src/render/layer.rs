@@ -35,16 +35,8 @@ pub(crate) fn compose(mut layer: Layer, background: Background) -> RgbaImage {
     let (width, height) = layer.dimensions();
     let row_length = (width as usize * 4).max(1);
     let row = |(y, pixels): (usize, &mut [u8])| match backdrop(background, y, height) {
-        Some(behind) => pixels
-            .as_chunks_mut()
-            .0
-            .iter_mut()
-            .for_each(|p| over(p, behind)),
-        None => pixels
-            .as_chunks_mut()
-            .0
-            .iter_mut()
-            .for_each(divide_by_alpha),
+        Some(behind) => pixels.as_chunks_mut().0.iter_mut().for_each(|p| over(p, behind)),
+        None => pixels.as_chunks_mut().0.iter_mut().for_each(divide_by_alpha),
     };
     layer.par_chunks_mut(row_length).enumerate().for_each(row);
     layer
@@ -99,11 +91,7 @@ mod tests {
 
     #[test]
     fn what_is_opaque_hides_the_background() {
-        for background in [
-            Background::Studio,
-            Background::Plain([9, 9, 9]),
-            Background::Transparent,
-        ] {
+        for background in [Background::Studio, Background::Plain([9, 9, 9]), Background::Transparent] {
             assert_eq!(one([1, 2, 3, 255], background), [1, 2, 3, 255]);
         }
         assert_eq!(one([0; 4], Background::Plain([7, 8, 9])), [7, 8, 9, 255]);
@@ -113,15 +101,9 @@ mod tests {
     #[test]
     fn half_white_over_black_is_half_the_light() {
         let half = encode(0.5);
-        assert_eq!(
-            one([half, half, half, 128], Background::Plain([0; 3])),
-            [half, half, half, 255]
-        );
+        assert_eq!(one([half, half, half, 128], Background::Plain([0; 3])), [half, half, half, 255]);
         let whole = one([half, half, half, 128], Background::Transparent);
-        assert!(
-            whole[..3].iter().all(|c| *c >= 254) && whole[3] == 128,
-            "{whole:?}"
-        );
+        assert!(whole[..3].iter().all(|c| *c >= 254) && whole[3] == 128, "{whole:?}");
     }
 
     #[test]

@@ -44,11 +44,7 @@ pub(crate) struct Node {
 impl Model {
     /// Reads what the default scene shows.
     pub(crate) fn load(asset: &mut Asset) -> Self {
-        let mut model = Model {
-            nodes: tree(asset.root()),
-            joints: joints(asset.root()),
-            ..Model::default()
-        };
+        let mut model = Model { nodes: tree(asset.root()), joints: joints(asset.root()), ..Model::default() };
         let mut reader = Reader {
             asset,
             textures: Textures::default(),
@@ -74,12 +70,7 @@ fn tree(root: &Root) -> Vec<Node> {
         if let Some(stored) = root.nodes.get(index)
             && reached.insert(index)
         {
-            nodes.push(Node {
-                index,
-                parent,
-                rest: Local::of(stored),
-                parts: Vec::new(),
-            });
+            nodes.push(Node { index, parent, rest: Local::of(stored), parts: Vec::new() });
         }
     };
     for index in tops(root) {
@@ -109,9 +100,7 @@ fn tops(root: &Root) -> Vec<usize> {
         .flat_map(|node| node.children.iter().flatten())
         .map(|child| child.value())
         .collect();
-    (0..root.nodes.len())
-        .filter(|node| !children.contains(node))
-        .collect()
+    (0..root.nodes.len()).filter(|node| !children.contains(node)).collect()
 }
 
 fn joints(root: &Root) -> HashSet<usize> {
@@ -143,20 +132,9 @@ impl Reader<'_> {
             return known.clone();
         }
         let first = parts.len();
-        let count = self
-            .asset
-            .root()
-            .meshes
-            .get(mesh)
-            .map_or(0, |m| m.primitives.len());
+        let count = self.asset.root().meshes.get(mesh).map_or(0, |m| m.primitives.len());
         for primitive in 0..count {
-            match mesh::part(
-                self.asset,
-                mesh,
-                primitive,
-                &mut self.textures,
-                &mut self.left,
-            ) {
+            match mesh::part(self.asset, mesh, primitive, &mut self.textures, &mut self.left) {
                 Ok(part) => parts.extend(part),
                 Err(error) => self.unread.push(error),
             }
@@ -169,9 +147,7 @@ impl Reader<'_> {
     fn notes(&self) -> Vec<String> {
         let kinds = self.left.iter().map(|left| left.to_string());
         let extensions = self.asset.root().extensions_used.iter();
-        let extensions = extensions
-            .filter(|e| !HARMLESS.contains(&e.as_str()))
-            .cloned();
+        let extensions = extensions.filter(|e| !HARMLESS.contains(&e.as_str())).cloned();
         let left: Vec<String> = kinds.chain(extensions).collect();
         let mut notes = Vec::new();
         if !left.is_empty() {

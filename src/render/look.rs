@@ -61,12 +61,7 @@ impl Session {
                 },
             });
         }
-        Ok(Look {
-            covered,
-            clips,
-            renderer: self.renderer().to_owned(),
-            notes: self.notes().to_vec(),
-        })
+        Ok(Look { covered, clips, renderer: self.renderer().to_owned(), notes: self.notes().to_vec() })
     }
 
     /// Seen from where the pose alone fills the view, as in a view that holds a

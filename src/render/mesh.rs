@@ -37,17 +37,9 @@ pub(crate) fn part(
 ) -> Result<Option<Part>, Error> {
     let stored = &asset.root().meshes[mesh].primitives[primitive];
     let (mode, indices, material) = (stored.mode, stored.indices, stored.material);
-    let of = |semantic| {
-        stored
-            .attributes
-            .get(&Checked::Valid(semantic))
-            .map(|a| a.value())
-    };
+    let of = |semantic| stored.attributes.get(&Checked::Valid(semantic)).map(|a| a.value());
     let (positions, normals) = (of(Semantic::Positions), of(Semantic::Normals));
-    let (colours, uvs) = (
-        of(Semantic::Colors(0)),
-        [0, 1, 2, 3].map(|n| of(Semantic::TexCoords(n))),
-    );
+    let (colours, uvs) = (of(Semantic::Colors(0)), [0, 1, 2, 3].map(|n| of(Semantic::TexCoords(n))));
     if stored.targets.as_ref().is_some_and(|t| !t.is_empty()) {
         left.insert(Left::MorphTargets);
     }
@@ -64,15 +56,8 @@ pub(crate) fn part(
         return Ok(None);
     };
     let (material, uv_set) = textures.material(asset, material.map(|m| m.value()));
-    let uv = uvs
-        .get(uv_set)
-        .copied()
-        .flatten()
-        .filter(|_| material.texture.is_some());
-    let mut raw = Raw {
-        vertices: positions.iter().map(|p| plain(*p)).collect(),
-        triangles,
-    };
+    let uv = uvs.get(uv_set).copied().flatten().filter(|_| material.texture.is_some());
+    let mut raw = Raw { vertices: positions.iter().map(|p| plain(*p)).collect(), triangles };
     let has_normals = match normals {
         Some(accessor) => raw.fill(&attribute(asset, accessor)?, |v, n| v.normal = n),
         None => false,
@@ -114,21 +99,14 @@ fn vertex_colours(asset: &mut Asset, accessor: usize) -> Result<Vec<[f32; 4]>, E
     match asset.shape(accessor)?.components {
         3 => {
             let colours = attribute(asset, accessor)?;
-            Ok(colours
-                .into_iter()
-                .map(|[r, g, b]| [r, g, b, 1.0])
-                .collect())
+            Ok(colours.into_iter().map(|[r, g, b]| [r, g, b, 1.0]).collect())
         }
         _ => attribute(asset, accessor),
     }
 }
 
 fn plain(position: [f32; 3]) -> Vertex {
-    Vertex {
-        position,
-        colour: [1.0; 4],
-        ..Vertex::default()
-    }
+    Vertex { position, colour: [1.0; 4], ..Vertex::default() }
 }
 
 /// Corners three by three; `None` for points and lines.
@@ -164,10 +142,7 @@ impl Raw {
     fn fill<T: Copy>(&mut self, values: &[T], set: impl Fn(&mut Vertex, T)) -> bool {
         let fits = values.len() == self.vertices.len();
         if fits {
-            self.vertices
-                .iter_mut()
-                .zip(values)
-                .for_each(|(v, value)| set(v, *value));
+            self.vertices.iter_mut().zip(values).for_each(|(v, value)| set(v, *value));
         }
         fits
     }
@@ -185,11 +160,7 @@ impl Raw {
         for triangle in &mut self.triangles {
             let corners = triangle.map(|i| self.vertices[i as usize]);
             let [a, b, c] = corners.map(|v| Vec3::from(v.position).as_dvec3());
-            let normal = (b - a)
-                .cross(c - a)
-                .normalize_or_zero()
-                .as_vec3()
-                .to_array();
+            let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3().to_array();
             let first = vertices.len() as u32;
             vertices.extend(corners.map(|v| Vertex { normal, ..v }));
             *triangle = [first, first + 1, first + 2];

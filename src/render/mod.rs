@@ -101,10 +101,7 @@ impl Picture {
         let mut file = Vec::new();
         let encoder = image::codecs::png::PngEncoder::new(&mut file);
         let written = self.pixels.write_with_encoder(encoder);
-        debug_assert!(
-            written.is_ok(),
-            "writing to memory cannot fail: {written:?}"
-        );
+        debug_assert!(written.is_ok(), "writing to memory cannot fail: {written:?}");
         file
     }
 }

@@ -36,11 +36,9 @@ impl Local {
     fn matrix(self) -> DMat4 {
         match self {
             Local::Matrix(matrix) => matrix,
-            Local::Steps {
-                translation,
-                rotation,
-                scale,
-            } => DMat4::from_scale_rotation_translation(scale, rotation, translation),
+            Local::Steps { translation, rotation, scale } => {
+                DMat4::from_scale_rotation_translation(scale, rotation, translation)
+            }
         }
     }
 
@@ -49,18 +47,9 @@ impl Local {
     fn set(&mut self, property: Property, value: &[f64]) {
         if let Local::Matrix(matrix) = *self {
             let (scale, rotation, translation) = matrix.to_scale_rotation_translation();
-            *self = Local::Steps {
-                translation,
-                rotation,
-                scale,
-            };
+            *self = Local::Steps { translation, rotation, scale };
         }
-        let Local::Steps {
-            translation,
-            rotation,
-            scale,
-        } = self
-        else {
+        let Local::Steps { translation, rotation, scale } = self else {
             return;
         };
         match (property, value) {
@@ -79,10 +68,7 @@ pub(crate) struct Pose(Vec<DMat4>);
 impl Pose {
     /// Nothing moves.
     pub(crate) fn rest(model: &Model) -> Self {
-        Self::of(
-            model,
-            &model.nodes.iter().map(|node| node.rest).collect::<Vec<_>>(),
-        )
+        Self::of(model, &model.nodes.iter().map(|node| node.rest).collect::<Vec<_>>())
     }
 
     /// The model at `t` seconds of a clip.
@@ -93,12 +79,8 @@ impl Pose {
         player: &mut Player,
         t: f64,
     ) -> Result<Self, Error> {
-        let place: HashMap<usize, usize> = model
-            .nodes
-            .iter()
-            .enumerate()
-            .map(|(place, node)| (node.index, place))
-            .collect();
+        let place: HashMap<usize, usize> =
+            model.nodes.iter().enumerate().map(|(place, node)| (node.index, place)).collect();
         let mut locals: Vec<Local> = model.nodes.iter().map(|node| node.rest).collect();
         for channel in &clip.channels {
             // Weights of morph targets are not drawn, nor nodes of no scene.
@@ -126,10 +108,7 @@ impl Pose {
     }
 
     /// Each part that is shown, and the way from its mesh to the world.
-    pub(crate) fn placed<'a>(
-        &'a self,
-        model: &'a Model,
-    ) -> impl Iterator<Item = (usize, DMat4)> + 'a {
+    pub(crate) fn placed<'a>(&'a self, model: &'a Model) -> impl Iterator<Item = (usize, DMat4)> + 'a {
         let nodes = model.nodes.iter().zip(&self.0);
         nodes.flat_map(|(node, world)| node.parts.iter().map(|part| (*part, *world)))
     }
@@ -150,11 +129,9 @@ impl Pose {
 
     fn boxes<'a>(&'a self, model: &'a Model) -> impl Iterator<Item = [DVec3; 8]> + 'a {
         let drawn = |part: &usize| !model.parts[*part].indices.is_empty();
-        self.placed(model)
-            .filter(move |(part, _)| drawn(part))
-            .map(|(part, world)| {
-                let corners = model.parts[part].corners();
-                corners.map(|corner| world.transform_point3(corner))
-            })
+        self.placed(model).filter(move |(part, _)| drawn(part)).map(|(part, world)| {
+            let corners = model.parts[part].corners();
+            corners.map(|corner| world.transform_point3(corner))
+        })
     }
 }

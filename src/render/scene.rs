@@ -47,12 +47,7 @@ pub(crate) struct Material {
 
 impl Default for Material {
     fn default() -> Self {
-        Material {
-            colour: [1.0; 4],
-            texture: None,
-            alpha: Alpha::Opaque,
-            double_sided: false,
-        }
+        Material { colour: [1.0; 4], texture: None, alpha: Alpha::Opaque, double_sided: false }
     }
 }
 
@@ -157,13 +152,7 @@ impl<'a> Scene<'a> {
             .into_iter()
             .filter_map(|(part, world)| Draw::new(part, world * parts[part].placement, frame))
             .collect();
-        let mut scene = Scene {
-            parts,
-            textures,
-            draws,
-            light: Light::studio(frame.up()),
-            size,
-        };
+        let mut scene = Scene { parts, textures, draws, light: Light::studio(frame.up()), size };
         scene.sort();
         scene
     }
@@ -177,12 +166,10 @@ impl<'a> Scene<'a> {
     /// the distance of their middles, which is right unless they interlock.
     fn sort(&mut self) {
         let parts = self.parts;
-        self.draws.sort_by(
-            |a, b| match (parts[a.part].blends(), parts[b.part].blends()) {
-                (true, true) => b.clip[3][3].total_cmp(&a.clip[3][3]),
-                (a, b) => a.cmp(&b),
-            },
-        );
+        self.draws.sort_by(|a, b| match (parts[a.part].blends(), parts[b.part].blends()) {
+            (true, true) => b.clip[3][3].total_cmp(&a.clip[3][3]),
+            (a, b) => a.cmp(&b),
+        });
     }
 }
 
@@ -225,19 +212,12 @@ fn normals(m: DMat3) -> Option<[[f32; 3]; 3]> {
         return None;
     }
     let m = m * (1.0 / size);
-    let cofactors = DMat3::from_cols(
-        m.y_axis.cross(m.z_axis),
-        m.z_axis.cross(m.x_axis),
-        m.x_axis.cross(m.y_axis),
-    );
+    let cofactors =
+        DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
     let sign = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
     let size = largest(cofactors);
     let scale = if size > 0.0 { sign / size } else { 0.0 };
-    Some(
-        (cofactors * scale)
-            .to_cols_array_2d()
-            .map(|c| c.map(|v| v as f32)),
-    )
+    Some((cofactors * scale).to_cols_array_2d().map(|c| c.map(|v| v as f32)))
 }
 
 fn largest(m: DMat3) -> f64 {

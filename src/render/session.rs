@@ -77,19 +77,12 @@ impl Session {
         let Some(name) = name else {
             return Ok((!self.clips.is_empty()).then_some(0));
         };
-        let found = self
-            .clips
-            .iter()
-            .position(|clip| clip.name.as_deref() == Some(name));
+        let found = self.clips.iter().position(|clip| clip.name.as_deref() == Some(name));
         match found {
             Some(clip) => Ok(Some(clip)),
             None => Err(Error::NoClip {
                 name: name.to_owned(),
-                clips: self
-                    .clips
-                    .iter()
-                    .filter_map(|clip| clip.name.clone())
-                    .collect(),
+                clips: self.clips.iter().filter_map(|clip| clip.name.clone()).collect(),
             }),
         }
     }
@@ -141,12 +134,7 @@ impl Session {
     }
 
     /// Draws a pose as a camera sees it.
-    pub(super) fn draw(
-        &mut self,
-        pose: &Pose,
-        frame: &Frame,
-        size: (u32, u32),
-    ) -> Result<Layer, Error> {
+    pub(super) fn draw(&mut self, pose: &Pose, frame: &Frame, size: (u32, u32)) -> Result<Layer, Error> {
         let placed = pose.placed(&self.model);
         let scene = Scene::new(&self.model.parts, &self.model.textures, placed, frame, size);
         let Canvas::Gpu(gpu) = &mut self.canvas else {
@@ -164,12 +152,7 @@ impl Session {
     }
 
     /// Where everything stands at `t` seconds.
-    pub(super) fn pose(
-        &mut self,
-        asset: &mut Asset,
-        clip: Option<usize>,
-        t: f64,
-    ) -> Result<Pose, Error> {
+    pub(super) fn pose(&mut self, asset: &mut Asset, clip: Option<usize>, t: f64) -> Result<Pose, Error> {
         match clip.and_then(|clip| self.clips.get(clip)) {
             Some(clip) => Ok(Pose::at(&self.model, asset, clip, &mut self.player, t)?),
             None => Ok(Pose::rest(&self.model)),
@@ -177,12 +160,7 @@ impl Session {
     }
 
     /// The view that holds all of a clip's motion.
-    fn frame(
-        &mut self,
-        asset: &mut Asset,
-        clip: Option<usize>,
-        size: (u32, u32),
-    ) -> Result<Frame, Error> {
+    fn frame(&mut self, asset: &mut Asset, clip: Option<usize>, size: (u32, u32)) -> Result<Frame, Error> {
         check(size)?;
         if let Some((of, at, frame)) = self.framed
             && (of, at) == (clip, size)
@@ -193,8 +171,7 @@ impl Session {
         let mut framing = Framing::new(size);
         for t in moments(duration) {
             let pose = self.pose(asset, clip, t)?;
-            pose.corners(&self.model)
-                .for_each(|corner| framing.add(corner));
+            pose.corners(&self.model).for_each(|corner| framing.add(corner));
         }
         let frame = framing.frame();
         self.framed = Some((clip, size, frame));
@@ -203,9 +180,7 @@ impl Session {
 
     /// How long a clip is, seconds; 0 without a clip.
     pub(super) fn duration(&self, clip: Option<usize>) -> f64 {
-        let duration = clip
-            .and_then(|clip| self.clips.get(clip))
-            .map_or(0.0, |c| c.duration);
+        let duration = clip.and_then(|clip| self.clips.get(clip)).map_or(0.0, |c| c.duration);
         if duration.is_finite() { duration } else { 0.0 }
     }
 }
@@ -222,10 +197,7 @@ fn moments(duration: f64) -> Vec<f64> {
 }
 
 /// The view that points fill.
-pub(super) fn close_up(
-    points: impl IntoIterator<Item = DVec3>,
-    size: (u32, u32),
-) -> Result<Frame, Error> {
+pub(super) fn close_up(points: impl IntoIterator<Item = DVec3>, size: (u32, u32)) -> Result<Frame, Error> {
     check(size)?;
     let mut framing = Framing::new(size);
     points.into_iter().for_each(|point| framing.add(point));
@@ -233,10 +205,7 @@ pub(super) fn close_up(
 }
 
 fn gpu(model: &Model) -> Result<Canvas, Error> {
-    Ok(Canvas::Gpu(Box::new(Gpu::new(
-        &model.parts,
-        &model.textures,
-    )?)))
+    Ok(Canvas::Gpu(Box::new(Gpu::new(&model.parts, &model.textures)?)))
 }
 
 /// One line, though errors may have several.
@@ -246,10 +215,7 @@ fn fallen_back(error: &Error) -> String {
         other => other.to_string(),
     };
     let words: Vec<&str> = reason.split_whitespace().collect();
-    format!(
-        "drawn by the built-in software renderer: {}",
-        words.join(" ")
-    )
+    format!("drawn by the built-in software renderer: {}", words.join(" "))
 }
 
 fn check((width, height): (u32, u32)) -> Result<(), Error> {

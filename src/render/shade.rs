@@ -47,11 +47,7 @@ impl Surface<'_> {
 
 fn brightness(light: &Light, normal: [f32; 3], facing: f32) -> f32 {
     let length = dot(normal, normal).sqrt();
-    let n = if length > 0.0 {
-        normal.map(|v| v * (facing / length))
-    } else {
-        [0.0, 0.0, 1.0]
-    };
+    let n = if length > 0.0 { normal.map(|v| v * (facing / length)) } else { [0.0, 0.0, 1.0] };
     let sky = 0.5 + 0.5 * dot(n, light.up.to_array());
     let [floor, above, key, fill] = light.strength;
     floor
@@ -76,16 +72,8 @@ impl Texture {
         }
         let (left, top) = ((x - 0.5).floor(), (y - 0.5).floor());
         let (right, down) = (x - 0.5 - left, y - 0.5 - top);
-        let upper = mix(
-            self.texel(level, left, top),
-            self.texel(level, left + 1.0, top),
-            right,
-        );
-        let lower = mix(
-            self.texel(level, left, top + 1.0),
-            self.texel(level, left + 1.0, top + 1.0),
-            right,
-        );
+        let upper = mix(self.texel(level, left, top), self.texel(level, left + 1.0, top), right);
+        let lower = mix(self.texel(level, left, top + 1.0), self.texel(level, left + 1.0, top + 1.0), right);
         mix(upper, lower, down)
     }
 

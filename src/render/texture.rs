@@ -29,11 +29,7 @@ pub(crate) struct Textures {
 impl Textures {
     /// A material, the default one where there is none, and which set of
     /// texture coordinates it uses.
-    pub(crate) fn material(
-        &mut self,
-        asset: &mut Asset,
-        index: Option<usize>,
-    ) -> (Material, usize) {
+    pub(crate) fn material(&mut self, asset: &mut Asset, index: Option<usize>) -> (Material, usize) {
         let Some(stored) = index.and_then(|i| asset.root().materials.get(i)) else {
             return (Material::default(), 0);
         };
@@ -50,13 +46,7 @@ impl Textures {
             return (material, 0);
         };
         let texture = self.texture(asset, texture);
-        (
-            Material {
-                texture,
-                ..material
-            },
-            uv_set,
-        )
+        (Material { texture, ..material }, uv_set)
     }
 
     fn texture(&mut self, asset: &mut Asset, index: usize) -> Option<usize> {
@@ -120,9 +110,8 @@ fn wrap(mode: Checked<WrappingMode>) -> Wrap {
 fn decode(asset: &mut Asset, index: usize) -> Result<Vec<Level>, Error> {
     let broken = |e: &dyn std::fmt::Display| Error::data(format!("/images/{index}"), e.to_string());
     let bytes = asset.image(index)?;
-    let mut reader = image::ImageReader::new(std::io::Cursor::new(bytes))
-        .with_guessed_format()
-        .map_err(|e| broken(&e))?;
+    let mut reader =
+        image::ImageReader::new(std::io::Cursor::new(bytes)).with_guessed_format().map_err(|e| broken(&e))?;
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(MOST_BYTES);
     reader.limits(limits);
@@ -130,11 +119,8 @@ fn decode(asset: &mut Asset, index: usize) -> Result<Vec<Level>, Error> {
     if pixels.is_empty() {
         return Err(broken(&"has no pixels"));
     }
-    let first = Level {
-        width: pixels.width(),
-        height: pixels.height(),
-        pixels: pixels.as_chunks().0.to_vec(),
-    };
+    let first =
+        Level { width: pixels.width(), height: pixels.height(), pixels: pixels.as_chunks().0.to_vec() };
     let mut levels = levels(first);
     levels.retain(|level| level.width <= MOST_TEXELS && level.height <= MOST_TEXELS);
     Ok(levels)
@@ -157,14 +143,9 @@ fn half(level: &Level) -> Level {
         let (x, y) = (x.min(level.width - 1), y.min(level.height - 1));
         level.pixels[y as usize * level.width as usize + x as usize]
     };
-    let four =
-        |x: u32, y: u32| [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| at(2 * x + i, 2 * y + j));
+    let four = |x: u32, y: u32| [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| at(2 * x + i, 2 * y + j));
     let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-    Level {
-        width,
-        height,
-        pixels: places.map(|(x, y)| mean(four(x, y))).collect(),
-    }
+    Level { width, height, pixels: places.map(|(x, y)| mean(four(x, y))).collect() }
 }
 
 fn mean(four: [[u8; 4]; 4]) -> [u8; 4] {
@@ -180,11 +161,7 @@ mod tests {
     #[test]
     fn levels_halve_down_to_one_pixel_and_keep_the_light() {
         let pixel = |i: u32| [[255; 4], [0, 0, 0, 255]][i as usize % 2];
-        let first = Level {
-            width: 6,
-            height: 4,
-            pixels: (0..24).map(pixel).collect(),
-        };
+        let first = Level { width: 6, height: 4, pixels: (0..24).map(pixel).collect() };
         let levels = levels(first);
         let sizes: Vec<_> = levels.iter().map(|l| (l.width, l.height)).collect();
         assert_eq!(sizes, [(6, 4), (3, 2), (1, 1)]);

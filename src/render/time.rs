@@ -63,11 +63,7 @@ mod tests {
     fn times_beyond_a_clip_are_clamped_and_said() {
         for (time, expected, said) in [
             (Time::Seconds(1.5), 1.5, ""),
-            (
-                Time::Seconds(9.0),
-                2.0,
-                "9 s is after the clip's end (it lasts 2 s): drew its end",
-            ),
+            (Time::Seconds(9.0), 2.0, "9 s is after the clip's end (it lasts 2 s): drew its end"),
             (Time::Seconds(-1.0), 0.0, "-1 s is before the clip's start"),
             (Time::Fraction(0.25), 0.5, ""),
             (Time::Fraction(1.5), 2.0, "150 % is after"),

@@ -53,18 +53,8 @@ impl<'a> Placed<'a> {
         let draw = &scene.draws[index];
         let part = &scene.parts[draw.part];
         let texture: Option<&Texture> = part.material.texture.map(|t| &scene.textures[t]);
-        let surface = Surface {
-            material: &part.material,
-            texture,
-            light: &scene.light,
-        };
-        Placed {
-            index: index as u32,
-            draw,
-            part,
-            surface,
-            size: scene.size,
-        }
+        let surface = Surface { material: &part.material, texture, light: &scene.light };
+        Placed { index: index as u32, draw, part, surface, size: scene.size }
     }
 
     /// Adds what is seen of one triangle of the part.
@@ -111,10 +101,7 @@ impl<'a> Placed<'a> {
             triangle.turn_round();
         }
         if self.is_flat(&vertices) {
-            triangle.flat = Some(
-                self.surface
-                    .shade(&self.mix(&vertices, [1.0, 0.0, 0.0]), triangle.facing)?,
-            );
+            triangle.flat = Some(self.surface.shade(&self.mix(&vertices, [1.0, 0.0, 0.0]), triangle.facing)?);
         }
         Some(triangle)
     }
@@ -137,9 +124,8 @@ impl<'a> Placed<'a> {
             add(&mut point.colour, vertex.colour, weight);
         }
         let m = &self.draw.normal;
-        point.normal = std::array::from_fn(|i| {
-            m[0][i] * normal[0] + m[1][i] * normal[1] + m[2][i] * normal[2]
-        });
+        point.normal =
+            std::array::from_fn(|i| m[0][i] * normal[0] + m[1][i] * normal[1] + m[2][i] * normal[2]);
         point
     }
 
@@ -189,10 +175,7 @@ fn add<const N: usize>(sum: &mut [f32; N], value: [f32; N], weight: f32) {
 
 impl Default for Corner {
     fn default() -> Self {
-        Corner {
-            clip: [0.0; 4],
-            weight: [0.0; 3],
-        }
+        Corner { clip: [0.0; 4], weight: [0.0; 3] }
     }
 }
 
@@ -213,10 +196,7 @@ impl Corner {
     fn on_screen(&self, size: (u32, u32)) -> [i32; 2] {
         let [x, y, _, w] = self.clip;
         let snap = |v: f32| (v * SUBPIXELS as f32 + 0.5).floor() as i32;
-        [
-            snap((0.5 + 0.5 * (x / w)) * size.0 as f32),
-            snap((0.5 - 0.5 * (y / w)) * size.1 as f32),
-        ]
+        [snap((0.5 + 0.5 * (x / w)) * size.0 as f32), snap((0.5 - 0.5 * (y / w)) * size.1 as f32)]
     }
 
     /// In double precision, as far ends may lie 10⁹ pictures away.
@@ -256,9 +236,5 @@ fn cut(corners: [Corner; 3]) -> Vec<Corner> {
     }
     // Rounding may leave a corner a hair outside; what is worse is not finite.
     let sound = |c: &Corner| c.clip[3] > 0.0 && c.clip.iter().all(|v| v.is_finite());
-    if polygon.iter().all(sound) {
-        polygon
-    } else {
-        Vec::new()
-    }
+    if polygon.iter().all(sound) { polygon } else { Vec::new() }
 }

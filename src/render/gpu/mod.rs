@@ -42,13 +42,7 @@ impl Gpu {
             let stock = Stock::new(&device, &queue, &pipelines, parts, textures);
             Ok((pipelines, stock))
         })?;
-        Ok(Gpu {
-            device,
-            queue,
-            pipelines,
-            stock,
-            name: format!("wgpu: {} ({})", info.name, info.backend),
-        })
+        Ok(Gpu { device, queue, pipelines, stock, name: format!("wgpu: {} ({})", info.name, info.backend) })
     }
 
     /// Draws a scene made of the parts that the adapter was made ready for.
@@ -108,11 +102,7 @@ impl Gpu {
             let kind = Kind::new(scene.material(draw), draw.mirrored);
             match batches.last_mut() {
                 Some(last) if (last.part, last.kind) == (draw.part, kind) => last.draws[1] += 1,
-                _ => batches.push(Batch {
-                    part: draw.part,
-                    kind,
-                    draws: [index, index + 1],
-                }),
+                _ => batches.push(Batch { part: draw.part, kind, draws: [index, index + 1] }),
             }
             self.pipelines.prepare(&self.device, kind);
         }
@@ -120,11 +110,8 @@ impl Gpu {
     }
 
     fn placements(&self, scene: &Scene) -> wgpu::Buffer {
-        let rows: Vec<_> = scene
-            .draws
-            .iter()
-            .map(|draw| stock::placement(draw, scene.material(draw)))
-            .collect();
+        let rows: Vec<_> =
+            scene.draws.iter().map(|draw| stock::placement(draw, scene.material(draw))).collect();
         self.device.create_buffer_init(&BufferInitDescriptor {
             label: Some("placements"),
             contents: bytemuck::cast_slice(&rows),
@@ -176,9 +163,7 @@ fn adapter() -> Result<wgpu::Adapter, Error> {
     descriptor.flags = wgpu::InstanceFlags::empty();
     let instance = wgpu::Instance::new(descriptor);
     let found = instance.request_adapter(&wgpu::RequestAdapterOptions::default());
-    pollster::block_on(found).map_err(|e| Error::NoAdapter {
-        reason: e.to_string(),
-    })
+    pollster::block_on(found).map_err(|e| Error::NoAdapter { reason: e.to_string() })
 }
 
 /// As little as possible, but pictures, textures and meshes as large as the
@@ -201,11 +186,8 @@ fn checked<T>(device: &wgpu::Device, work: impl FnOnce() -> Result<T, Error>) ->
     use wgpu::ErrorFilter::{Internal, OutOfMemory, Validation};
     let scopes = [Internal, OutOfMemory, Validation].map(|f| device.push_error_scope(f));
     let done = work();
-    let complaints: Vec<_> = scopes
-        .into_iter()
-        .rev()
-        .filter_map(|scope| pollster::block_on(scope.pop()))
-        .collect();
+    let complaints: Vec<_> =
+        scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop())).collect();
     match complaints.first() {
         Some(complaint) => Err(Error::adapter(complaint)),
         None => done,

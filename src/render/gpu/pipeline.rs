@@ -42,13 +42,8 @@ pub(super) struct Pipelines {
 impl Pipelines {
     pub(super) fn new(device: &wgpu::Device) -> Self {
         let light = layout(device, &[(ShaderStages::VERTEX_FRAGMENT, uniform())]);
-        let texture = layout(
-            device,
-            &[
-                (ShaderStages::FRAGMENT, picture()),
-                (ShaderStages::FRAGMENT, reading()),
-            ],
-        );
+        let texture =
+            layout(device, &[(ShaderStages::FRAGMENT, picture()), (ShaderStages::FRAGMENT, reading())]);
         Pipelines {
             made: HashMap::new(),
             shader: device.create_shader_module(wgpu::include_wgsl!("mesh.wgsl")),
@@ -85,18 +80,14 @@ impl Pipelines {
         picture: &wgpu::TextureView,
         reading: &wgpu::Sampler,
     ) -> wgpu::BindGroup {
-        let resources = [
-            wgpu::BindingResource::TextureView(picture),
-            wgpu::BindingResource::Sampler(reading),
-        ];
+        let resources =
+            [wgpu::BindingResource::TextureView(picture), wgpu::BindingResource::Sampler(reading)];
         bind(device, &self.texture, &resources)
     }
 
     fn make(&self, device: &wgpu::Device, kind: Kind) -> wgpu::RenderPipeline {
-        let constants = [
-            ("MASKED", f64::from(u8::from(kind.masked))),
-            ("BLENDED", f64::from(u8::from(kind.blended))),
-        ];
+        let constants =
+            [("MASKED", f64::from(u8::from(kind.masked))), ("BLENDED", f64::from(u8::from(kind.blended)))];
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: None,
             layout: Some(&self.layout),
@@ -108,10 +99,7 @@ impl Pipelines {
             },
             primitive: primitive(kind),
             depth_stencil: Some(depth(kind)),
-            multisample: wgpu::MultisampleState {
-                count: SAMPLES,
-                ..Default::default()
-            },
+            multisample: wgpu::MultisampleState { count: SAMPLES, ..Default::default() },
             fragment: Some(wgpu::FragmentState {
                 module: &self.shader,
                 entry_point: Some("shade"),
@@ -129,11 +117,7 @@ impl Pipelines {
 
 fn primitive(kind: Kind) -> wgpu::PrimitiveState {
     wgpu::PrimitiveState {
-        front_face: if kind.mirrored {
-            wgpu::FrontFace::Cw
-        } else {
-            wgpu::FrontFace::Ccw
-        },
+        front_face: if kind.mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
         cull_mode: (!kind.double_sided).then_some(wgpu::Face::Back),
         ..Default::default()
     }
@@ -152,9 +136,7 @@ fn depth(kind: Kind) -> wgpu::DepthStencilState {
 fn colour(kind: Kind) -> wgpu::ColorTargetState {
     wgpu::ColorTargetState {
         format: COLOUR,
-        blend: kind
-            .blended
-            .then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+        blend: kind.blended.then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
         write_mask: wgpu::ColorWrites::ALL,
     }
 }
@@ -201,10 +183,7 @@ fn reading() -> wgpu::BindingType {
     wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)
 }
 
-fn layout(
-    device: &wgpu::Device,
-    bindings: &[(ShaderStages, wgpu::BindingType)],
-) -> wgpu::BindGroupLayout {
+fn layout(device: &wgpu::Device, bindings: &[(ShaderStages, wgpu::BindingType)]) -> wgpu::BindGroupLayout {
     let entries: Vec<_> = (0..)
         .zip(bindings)
         .map(|(binding, (visibility, ty))| wgpu::BindGroupLayoutEntry {
@@ -214,10 +193,7 @@ fn layout(
             count: None,
         })
         .collect();
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: None,
-        entries: &entries,
-    })
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries })
 }
 
 fn bind(
@@ -227,14 +203,7 @@ fn bind(
 ) -> wgpu::BindGroup {
     let entries: Vec<_> = (0..)
         .zip(resources)
-        .map(|(binding, resource)| wgpu::BindGroupEntry {
-            binding,
-            resource: resource.clone(),
-        })
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
         .collect();
-    device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: None,
-        layout,
-        entries: &entries,
-    })
+    device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
 }

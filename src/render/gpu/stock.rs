@@ -39,9 +39,7 @@ impl Stock {
         let textures = std::iter::once(&white).chain(textures);
         Stock {
             parts: parts.iter().map(|p| StockedPart::new(device, p)).collect(),
-            textures: textures
-                .map(|t| upload(device, queue, pipelines, t))
-                .collect(),
+            textures: textures.map(|t| upload(device, queue, pipelines, t)).collect(),
         }
     }
 }
@@ -54,18 +52,11 @@ impl StockedPart {
         let rows: Vec<[f32; 12]> = part.vertices.iter().map(vertex).collect();
         let buffer = |contents: &[u8], usage| {
             let label = None;
-            device.create_buffer_init(&BufferInitDescriptor {
-                label,
-                contents,
-                usage,
-            })
+            device.create_buffer_init(&BufferInitDescriptor { label, contents, usage })
         };
         Some(StockedPart {
             vertices: buffer(bytemuck::cast_slice(&rows), wgpu::BufferUsages::VERTEX),
-            indices: buffer(
-                bytemuck::cast_slice(&part.indices),
-                wgpu::BufferUsages::INDEX,
-            ),
+            indices: buffer(bytemuck::cast_slice(&part.indices), wgpu::BufferUsages::INDEX),
             index_count: part.indices.len() as u32,
             texture: part.material.texture.map_or(0, |t| t + 1),
         })
@@ -86,29 +77,12 @@ pub(super) fn placement(draw: &Draw, material: &Material) -> [[f32; 4]; 8] {
     let [c0, c1, c2, c3] = draw.clip;
     let [n0, n1, n2] = draw.normal;
     let column = |n: [f32; 3], last: f32| [n[0], n[1], n[2], last];
-    [
-        c0,
-        c1,
-        c2,
-        c3,
-        column(n0, cutoff),
-        column(n1, 0.0),
-        column(n2, 0.0),
-        material.colour,
-    ]
+    [c0, c1, c2, c3, column(n0, cutoff), column(n1, 0.0), column(n2, 0.0), material.colour]
 }
 
 fn white() -> Texture {
-    let level = Level {
-        width: 1,
-        height: 1,
-        pixels: vec![[255; 4]],
-    };
-    Texture {
-        levels: std::sync::Arc::new(vec![level]),
-        wrap: [Wrap::Clamp; 2],
-        nearest: true,
-    }
+    let level = Level { width: 1, height: 1, pixels: vec![[255; 4]] };
+    Texture { levels: std::sync::Arc::new(vec![level]), wrap: [Wrap::Clamp; 2], nearest: true }
 }
 
 fn upload(
@@ -120,11 +94,7 @@ fn upload(
     let largest = device.limits().max_texture_dimension_2d;
     let too_large = |level: &&Level| level.width > largest || level.height > largest;
     let levels: Vec<&Level> = texture.levels.iter().skip_while(too_large).collect();
-    let size = wgpu::Extent3d {
-        width: levels[0].width,
-        height: levels[0].height,
-        depth_or_array_layers: 1,
-    };
+    let size = wgpu::Extent3d { width: levels[0].width, height: levels[0].height, depth_or_array_layers: 1 };
     let descriptor = wgpu::TextureDescriptor {
         label: None,
         size,
@@ -135,11 +105,7 @@ fn upload(
         usage: wgpu::TextureUsages::TEXTURE_BINDING,
         view_formats: &[],
     };
-    let bytes: Vec<u8> = levels
-        .iter()
-        .flat_map(|l| l.pixels.as_flattened())
-        .copied()
-        .collect();
+    let bytes: Vec<u8> = levels.iter().flat_map(|l| l.pixels.as_flattened()).copied().collect();
     let order = TextureDataOrder::LayerMajor;
     let picture = device.create_texture_with_data(queue, &descriptor, order, &bytes);
     let view = picture.create_view(&Default::default());
@@ -147,11 +113,7 @@ fn upload(
 }
 
 fn sampler(device: &wgpu::Device, texture: &Texture) -> wgpu::Sampler {
-    let filter = if texture.nearest {
-        wgpu::FilterMode::Nearest
-    } else {
-        wgpu::FilterMode::Linear
-    };
+    let filter = if texture.nearest { wgpu::FilterMode::Nearest } else { wgpu::FilterMode::Linear };
     let [address_mode_u, address_mode_v] = texture.wrap.map(|wrap| match wrap {
         Wrap::Repeat => wgpu::AddressMode::Repeat,
         Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,

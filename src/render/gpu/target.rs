@@ -81,17 +81,9 @@ impl Target {
     }
 
     /// Waits for the pass and puts its pixels into the picture at `at`.
-    pub(super) fn read(
-        &self,
-        device: &wgpu::Device,
-        layer: &mut Layer,
-        at: (u32, u32),
-    ) -> Result<(), Error> {
+    pub(super) fn read(&self, device: &wgpu::Device, layer: &mut Layer, at: (u32, u32)) -> Result<(), Error> {
         self.rows.map_async(wgpu::MapMode::Read, .., |_| {});
-        let wait = wgpu::PollType::Wait {
-            submission_index: None,
-            timeout: Some(PATIENCE),
-        };
+        let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) };
         device.poll(wait).map_err(Error::adapter)?;
         // Fails when mapping did.
         let mapped = self.rows.get_mapped_range(..).map_err(Error::adapter)?;
@@ -116,11 +108,7 @@ fn texture(
 ) -> wgpu::Texture {
     device.create_texture(&wgpu::TextureDescriptor {
         label: None,
-        size: wgpu::Extent3d {
-            width,
-            height,
-            depth_or_array_layers: 1,
-        },
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count,
         dimension: wgpu::TextureDimension::D2,

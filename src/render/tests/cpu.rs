@@ -7,9 +7,7 @@ const WHITE: [f32; 4] = [1.0; 4];
 
 /// Triangles given in clip space, drawn as they are: no camera.
 fn flat_scene(parts: &[Part], size: (u32, u32)) -> Scene<'_> {
-    let identity = DMat4::IDENTITY
-        .to_cols_array_2d()
-        .map(|c| c.map(|v| v as f32));
+    let identity = DMat4::IDENTITY.to_cols_array_2d().map(|c| c.map(|v| v as f32));
     let draw = |part| Draw {
         part,
         clip: identity,
@@ -27,10 +25,7 @@ fn flat_scene(parts: &[Part], size: (u32, u32)) -> Scene<'_> {
 
 /// Corners in pixels, y down, at a depth; two triangles a rectangle.
 fn polygon(corners: &[[f32; 2]], depth: f32, colour: [f32; 4], size: (u32, u32)) -> Part {
-    let mut part = empty(Material {
-        double_sided: true,
-        ..Material::default()
-    });
+    let mut part = empty(Material { double_sided: true, ..Material::default() });
     let (width, height) = (size.0 as f32, size.1 as f32);
     part.vertices.extend(corners.iter().map(|[x, y]| Vertex {
         position: [x / width * 2.0 - 1.0, 1.0 - y / height * 2.0, depth],
@@ -49,10 +44,7 @@ fn rectangle([x0, y0, x1, y1]: [f32; 4], size: (u32, u32)) -> Part {
 }
 
 fn alphas(layer: &Layer) -> Vec<Vec<u8>> {
-    layer
-        .rows()
-        .map(|row| row.map(|p| p[3]).collect())
-        .collect()
+    layer.rows().map(|row| row.map(|p| p[3]).collect()).collect()
 }
 
 #[test]
@@ -86,21 +78,10 @@ fn half_a_pixel_is_half_the_samples() {
 #[test]
 fn triangles_that_share_an_edge_draw_each_sample_once() {
     let size = (40, 40);
-    let outline = [
-        [3.3, 2.1],
-        [20.5, 1.0],
-        [37.2, 9.7],
-        [38.0, 38.0],
-        [20.5, 33.5],
-        [1.2, 30.9],
-    ];
+    let outline = [[3.3, 2.1], [20.5, 1.0], [37.2, 9.7], [38.0, 38.0], [20.5, 33.5], [1.2, 30.9]];
     // The fan meets in a corner that lies exactly on a sample.
     let middle = [20.375, 20.125];
-    let material = Material {
-        alpha: Alpha::Blend,
-        double_sided: true,
-        ..Material::default()
-    };
+    let material = Material { alpha: Alpha::Blend, double_sided: true, ..Material::default() };
     let parts: Vec<Part> = (0..outline.len())
         .map(|k| {
             let corners = [middle, outline[k], outline[(k + 1) % outline.len()]];
@@ -111,9 +92,8 @@ fn triangles_that_share_an_edge_draw_each_sample_once() {
         .collect();
     let layer = cpu::draw(&flat_scene(&parts, size));
     // Half transparent: a sample drawn twice would be 191, one left out 0.
-    for (x, y, pixel) in layer
-        .enumerate_pixels()
-        .filter(|(x, y, _)| (6..32).contains(x) && (9..30).contains(y))
+    for (x, y, pixel) in
+        layer.enumerate_pixels().filter(|(x, y, _)| (6..32).contains(x) && (9..30).contains(y))
     {
         assert_eq!(pixel[3], 128, "{x} {y}");
     }
@@ -137,31 +117,20 @@ fn what_passes_the_camera_is_cut_at_the_near_plane() {
     let size = (32, 32);
     // Clip coordinates by a matrix whose w is the vertex's z: a floor that runs
     // from before the eye to behind it.
-    let mut part = empty(Material {
-        double_sided: true,
-        ..Material::default()
-    });
-    part.vertices.extend(
-        [[-1.0, -0.2, 4.0], [1.0, -0.2, 4.0], [0.0, -0.2, -4.0]].map(|position| Vertex {
-            position,
-            normal: [0.0, 1.0, 0.0],
-            colour: WHITE,
-            ..Vertex::default()
-        }),
-    );
+    let mut part = empty(Material { double_sided: true, ..Material::default() });
+    part.vertices.extend([[-1.0, -0.2, 4.0], [1.0, -0.2, 4.0], [0.0, -0.2, -4.0]].map(|position| Vertex {
+        position,
+        normal: [0.0, 1.0, 0.0],
+        colour: WHITE,
+        ..Vertex::default()
+    }));
     part.indices.extend([0, 1, 2]);
     let parts = [part];
     let mut scene = flat_scene(&parts, size);
-    scene.draws[0].clip = [
-        [1.0, 0.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0, 0.0],
-        [0.0, 0.0, 0.0, 1.0],
-        [0.0, 0.0, 0.5, 0.0],
-    ];
-    let rows: Vec<usize> = alphas(&cpu::draw(&scene))
-        .iter()
-        .map(|row| row.iter().filter(|a| **a > 0).count())
-        .collect();
+    scene.draws[0].clip =
+        [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.5, 0.0]];
+    let rows: Vec<usize> =
+        alphas(&cpu::draw(&scene)).iter().map(|row| row.iter().filter(|a| **a > 0).count()).collect();
     // The far edge is at y = −0.2/4, the near plane meets it at y = −0.2/0.5:
     // 16.8 and 22.4 pixels down.
     let drawn: Vec<usize> = (0..32).filter(|y| rows[*y] > 0).collect();
@@ -175,12 +144,7 @@ fn vertices_far_outside_and_broken_ones_do_no_harm() {
     let huge = polygon(&[[-1e9, -1e9], [-1e9, 3e9], [3e9, -1e9]], 0.5, WHITE, size);
     assert_eq!(covered(&cpu::draw(&flat_scene(&[huge], size))), 1.0);
     for bad in [f32::NAN, f32::INFINITY, f32::MAX, -f32::MAX] {
-        let broken = polygon(
-            &[[bad, 1.0], [1.0, bad], [5.0, 5.0], [bad, bad]],
-            0.5,
-            WHITE,
-            size,
-        );
+        let broken = polygon(&[[bad, 1.0], [1.0, bad], [5.0, 5.0], [bad, bad]], 0.5, WHITE, size);
         cpu::draw(&flat_scene(&[broken], size));
     }
 }
@@ -201,10 +165,7 @@ fn backs_are_culled_unless_double_sided_and_mirrors_turn_them() {
 fn pictures_do_not_depend_on_the_number_of_threads() {
     for (name, stage) in stages() {
         let [one, two, seven] = [1, 2, 7].map(|threads| {
-            let pool = rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
-                .build()
-                .unwrap();
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| cpu::draw(&stage.scene((300, 200))))
         });
         assert!(one == two && one == seven, "{name}");
@@ -217,13 +178,9 @@ fn stages_are_seen_and_fill_the_view() {
         let layer = cpu::draw(&stage.scene((200, 200)));
         let share = covered(&layer);
         assert_eq!(share > 0.05, name != "nothing", "{name}: {share}");
-        let on_border = |(x, y, p): (u32, u32, &image::Rgba<u8>)| {
-            p[3] > 0 && (x.min(199 - x) < 5 || y.min(199 - y) < 5)
-        };
-        assert!(
-            !layer.enumerate_pixels().any(on_border),
-            "{name} touches the border"
-        );
+        let on_border =
+            |(x, y, p): (u32, u32, &image::Rgba<u8>)| p[3] > 0 && (x.min(199 - x) < 5 || y.min(199 - y) < 5);
+        assert!(!layer.enumerate_pixels().any(on_border), "{name} touches the border");
     }
 }
 
@@ -237,11 +194,7 @@ fn scale_does_not_change_the_picture() {
             *world = DMat4::from_scale(DVec3::splat(scale)) * *world;
         }
         let other = cpu::draw(&scaled.scene((128, 128)));
-        let differ = plain
-            .pixels()
-            .zip(other.pixels())
-            .filter(|(a, b)| a != b)
-            .count();
+        let differ = plain.pixels().zip(other.pixels()).filter(|(a, b)| a != b).count();
         assert!(differ < 20, "{scale}: {differ}");
     }
 }
@@ -257,9 +210,7 @@ fn pictures_are_the_same_on_every_machine() {
     let turn = DMat4::from_quat(DQuat::from_xyzw(0.48, 0.36, 0.0, 0.8));
     for part in 0..stage.parts.len() - first {
         let at = DVec3::new(1.5 * part as f64, 0.5, -1.0);
-        stage
-            .placed
-            .push((first + part, DMat4::from_translation(at) * turn));
+        stage.placed.push((first + part, DMat4::from_translation(at) * turn));
     }
     let layer = cpu::draw(&stage.scene((160, 120)));
     assert!(covered(&layer) > 0.2);

@@ -24,9 +24,8 @@ fn gpu(stage: &Stage) -> Option<Gpu> {
 
 /// Pixels that differ by more than 8 levels in some channel.
 fn differing(a: &RgbaImage, b: &RgbaImage) -> usize {
-    let far = |(a, b): (&image::Rgba<u8>, &image::Rgba<u8>)| {
-        a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 8)
-    };
+    let far =
+        |(a, b): (&image::Rgba<u8>, &image::Rgba<u8>)| a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 8);
     assert_eq!(a.dimensions(), b.dimensions());
     a.pixels().zip(b.pixels()).filter(|pair| far(*pair)).count()
 }
@@ -56,9 +55,7 @@ fn keep(name: &str, size: (u32, u32), pictures: &[RgbaImage; 2]) {
     };
     for (renderer, picture) in ["wgpu", "cpu"].iter().zip(pictures) {
         let file = format!("{name} {} {renderer}.png", size.0).replace(' ', "-");
-        picture
-            .save(std::path::Path::new(&folder).join(file))
-            .unwrap();
+        picture.save(std::path::Path::new(&folder).join(file)).unwrap();
     }
 }
 

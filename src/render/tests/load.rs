@@ -17,10 +17,7 @@ impl File {
             "asset": {"version": "2.0"}, "buffers": [{}], "bufferViews": [], "accessors": [],
             "meshes": [], "nodes": [],
         });
-        File {
-            json,
-            bin: Vec::new(),
-        }
+        File { json, bin: Vec::new() }
     }
 
     fn push(&mut self, list: &str, item: Value) -> usize {
@@ -45,10 +42,7 @@ impl File {
     }
 
     fn floats(&mut self, kind: &str, numbers: &[f32]) -> usize {
-        let width = ["SCALAR", "", "VEC2", "VEC3", "VEC4"]
-            .iter()
-            .position(|k| *k == kind)
-            .unwrap();
+        let width = ["SCALAR", "", "VEC2", "VEC3", "VEC4"].iter().position(|k| *k == kind).unwrap();
         self.accessor(kind, 5126, &bytes(numbers), numbers.len() / width.max(1))
     }
 
@@ -79,21 +73,12 @@ impl File {
 }
 
 fn options() -> Options {
-    Options {
-        size: SIZE,
-        renderer: Renderer::Cpu,
-        ..Options::default()
-    }
+    Options { size: SIZE, renderer: Renderer::Cpu, ..Options::default() }
 }
 
 /// A house-shaped outline as a fan, seen from the front.
-const OUTLINE: [[f32; 3]; 5] = [
-    [-1.0, -1.0, 0.0],
-    [1.0, -1.0, 0.0],
-    [1.0, 0.5, 0.0],
-    [0.0, 1.5, 0.0],
-    [-1.0, 0.5, 0.0],
-];
+const OUTLINE: [[f32; 3]; 5] =
+    [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 0.5, 0.0], [0.0, 1.5, 0.0], [-1.0, 0.5, 0.0]];
 const AS_TRIANGLES: [usize; 9] = [0, 1, 2, 0, 2, 4, 4, 2, 3];
 
 fn gather(indices: &[usize]) -> Vec<f32> {
@@ -122,24 +107,13 @@ fn strips_fans_and_indices_draw_the_same() {
     let plain = plain_house().picture();
     assert!(plain.covered > 0.2 && plain.notes.is_empty(), "{plain:?}");
     for (name, file) in [
-        (
-            "indexed",
-            house(4, &[0, 1, 2, 3, 4], Some(&AS_TRIANGLES.map(|i| i as u8))),
-        ),
+        ("indexed", house(4, &[0, 1, 2, 3, 4], Some(&AS_TRIANGLES.map(|i| i as u8)))),
         ("strip", house(5, &[0, 1, 4, 2, 3], None)),
-        (
-            "indexed strip",
-            house(5, &[0, 1, 2, 3, 4], Some(&[0, 1, 4, 2, 3])),
-        ),
+        ("indexed strip", house(5, &[0, 1, 2, 3, 4], Some(&[0, 1, 4, 2, 3]))),
         ("fan", house(6, &[0, 1, 2, 3, 4], None)),
     ] {
         let other = file.picture();
-        let differ = plain
-            .pixels
-            .pixels()
-            .zip(other.pixels.pixels())
-            .filter(|(a, b)| a != b)
-            .count();
+        let differ = plain.pixels.pixels().zip(other.pixels.pixels()).filter(|(a, b)| a != b).count();
         assert_eq!(differ, 0, "{name}");
     }
 }
@@ -155,10 +129,7 @@ fn faces_are_flat_without_normals_and_mirrors_keep_their_fronts() {
 
     let mut mirrored = plain_house();
     mirrored.json["nodes"][0]["scale"] = json!([-1, 1, 1]);
-    assert!(
-        mirrored.picture().pixels == plain.picture().pixels,
-        "the house is symmetric"
-    );
+    assert!(mirrored.picture().pixels == plain.picture().pixels, "the house is symmetric");
 }
 
 #[test]
@@ -190,32 +161,18 @@ fn a_matrix_and_its_steps_place_alike() {
 /// The colour most of the drawn pixels have, over black.
 fn main_colour(file: &File) -> [u8; 3] {
     let background = Background::Plain([0; 3]);
-    let picture = thumbnail(
-        &mut file.asset(),
-        &Options {
-            background,
-            ..options()
-        },
-    )
-    .unwrap();
+    let picture = thumbnail(&mut file.asset(), &Options { background, ..options() }).unwrap();
     let mut counts = std::collections::HashMap::new();
     for pixel in picture.pixels.pixels().filter(|p| p.0[..3] != [0; 3]) {
         *counts.entry([pixel[0], pixel[1], pixel[2]]).or_insert(0) += 1;
     }
-    counts
-        .into_iter()
-        .max_by_key(|(_, n)| *n)
-        .expect("something is drawn")
-        .0
+    counts.into_iter().max_by_key(|(_, n)| *n).expect("something is drawn").0
 }
 
 #[test]
 fn factor_vertex_colour_and_texture_multiply() {
     let mut file = plain_house();
-    file.push(
-        "materials",
-        json!({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 0, 1]}}),
-    );
+    file.push("materials", json!({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 0, 1]}}));
     file.json["meshes"][0]["primitives"][0]["material"] = json!(0);
     let [r, g, b] = main_colour(&file);
     assert!(r > 100 && r == g && b == 0, "factor: {r} {g} {b}");
@@ -224,10 +181,7 @@ fn factor_vertex_colour_and_texture_multiply() {
     let colours = file.accessor("VEC4", 5121, &colours, 9);
     file.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(colours);
     let [r, g, b] = main_colour(&file);
-    assert!(
-        r > 100 && g < r - 30 && g > 60 && b == 0,
-        "vertex colour: {r} {g} {b}"
-    );
+    assert!(r > 100 && g < r - 30 && g > 60 && b == 0, "vertex colour: {r} {g} {b}");
 
     let texture = image::RgbImage::from_pixel(4, 4, image::Rgb([0, 255, 255]));
     let mut png = std::io::Cursor::new(Vec::new());
@@ -235,10 +189,7 @@ fn factor_vertex_colour_and_texture_multiply() {
     let png = png.into_inner();
     let accessor = file.accessor("SCALAR", 5121, &png, png.len());
     let view = file.json["accessors"][accessor]["bufferView"].clone();
-    file.push(
-        "images",
-        json!({"bufferView": view, "mimeType": "image/png"}),
-    );
+    file.push("images", json!({"bufferView": view, "mimeType": "image/png"}));
     file.push("textures", json!({"source": 0}));
     file.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = json!({"index": 0});
     let uv = file.floats("VEC2", &[0.5; 18]);
@@ -252,21 +203,14 @@ fn a_broken_texture_is_named_and_the_rest_drawn() {
     let mut file = plain_house();
     let junk = file.accessor("SCALAR", 5121, b"no picture", 10);
     let view = file.json["accessors"][junk]["bufferView"].clone();
-    file.push(
-        "images",
-        json!({"bufferView": view, "mimeType": "image/png"}),
-    );
+    file.push("images", json!({"bufferView": view, "mimeType": "image/png"}));
     file.push("textures", json!({"source": 0}));
     let pbr = json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}});
     file.push("materials", pbr);
     file.json["meshes"][0]["primitives"][0]["material"] = json!(0);
     let picture = file.picture();
     assert!(picture.covered > 0.2);
-    assert!(
-        picture.notes[0].starts_with("left out: /images/0"),
-        "{:?}",
-        picture.notes
-    );
+    assert!(picture.notes[0].starts_with("left out: /images/0"), "{:?}", picture.notes);
 }
 
 #[test]
@@ -326,11 +270,7 @@ fn clips_are_found_by_name_and_times_clamped_aloud() {
     file.animate("slide", 0, "translation", &[0.0, 0.0, 0.0, 5.0, 0.0, 0.0]);
     file.animate("rise", 0, "translation", &[0.0, 0.0, 0.0, 0.0, 9.0, 0.0]);
     let draw = |clip: Option<&str>, time| {
-        let options = Options {
-            clip: clip.map(str::to_owned),
-            time,
-            ..options()
-        };
+        let options = Options { clip: clip.map(str::to_owned), time, ..options() };
         thumbnail(&mut file.asset(), &options)
     };
     let first = draw(None, Time::Fraction(0.5)).unwrap();
@@ -338,17 +278,9 @@ fn clips_are_found_by_name_and_times_clamped_aloud() {
     assert!(draw(Some("rise"), Time::Seconds(0.5)).unwrap().pixels != first.pixels);
     let late = draw(None, Time::Seconds(9.0)).unwrap();
     assert!(late.pixels == draw(None, Time::Fraction(1.0)).unwrap().pixels);
-    assert_eq!(
-        late.notes,
-        ["9 s is after the clip's end (it lasts 1 s): drew its end"]
-    );
-    let error = draw(Some("fall"), Time::Seconds(0.0))
-        .unwrap_err()
-        .to_string();
-    assert_eq!(
-        error,
-        "there is no clip named `fall`: the file has `slide`, `rise`"
-    );
+    assert_eq!(late.notes, ["9 s is after the clip's end (it lasts 1 s): drew its end"]);
+    let error = draw(Some("fall"), Time::Seconds(0.0)).unwrap_err().to_string();
+    assert_eq!(error, "there is no clip named `fall`: the file has `slide`, `rise`");
 }
 
 /// Panics when anything is drawn near the border at some time of the clip.
@@ -358,9 +290,7 @@ fn stays_in_view(file: &File) {
     for step in 0..=100 {
         let time = Time::Fraction(f64::from(step) / 100.0);
         let background = Background::Transparent;
-        let picture = session
-            .picture(&mut asset, Some(0), time, (128, 80), background)
-            .unwrap();
+        let picture = session.picture(&mut asset, Some(0), time, (128, 80), background).unwrap();
         assert!(picture.covered > 0.0);
         for (x, y, pixel) in picture.pixels.enumerate_pixels() {
             let border = x < 3 || y < 2 || x > 124 || y > 77;
@@ -382,12 +312,7 @@ fn turns_in_step_with_the_framing_stay_in_view() {
     let mut file = plain_house();
     file.json["nodes"][0]["scale"] = json!([0.2, 3, 1]);
     let quarter = std::f32::consts::FRAC_1_SQRT_2;
-    let turn = [
-        [0.0, 1.0],
-        [quarter, quarter],
-        [1.0, 0.0],
-        [quarter, -quarter],
-    ];
+    let turn = [[0.0, 1.0], [quarter, quarter], [1.0, 0.0], [quarter, -quarter]];
     let key = |i: usize| [0.0, 0.0, turn[i % 4][0], turn[i % 4][1]];
     let keys: Vec<f32> = (0..=256).flat_map(key).collect();
     file.animate("64 turns", 0, "rotation", &keys);
@@ -414,18 +339,11 @@ fn a_look_sees_what_is_long_and_thin_but_not_what_is_clear() {
     let far = |i: i32| json!({"mesh": 0, "translation": [i * 2000, i * 1500, 0]});
     file.json["nodes"] = (0..3).map(far).collect();
     assert!(file.picture().covered < LEAST_VISIBLE);
-    let seen = |file: &File| {
-        look(&mut file.asset(), SIZE, Renderer::Cpu)
-            .unwrap()
-            .visible()
-    };
+    let seen = |file: &File| look(&mut file.asset(), SIZE, Renderer::Cpu).unwrap().visible();
     assert!(seen(&file));
 
     let pbr = json!({"baseColorFactor": [1, 1, 1, 0]});
-    file.push(
-        "materials",
-        json!({"alphaMode": "BLEND", "pbrMetallicRoughness": pbr}),
-    );
+    file.push("materials", json!({"alphaMode": "BLEND", "pbrMetallicRoughness": pbr}));
     file.json["meshes"][0]["primitives"][0]["material"] = json!(0);
     assert!(!seen(&file));
 }
@@ -446,25 +364,17 @@ fn sizes_out_of_range_are_errors() {
 #[test]
 fn damaged_files_do_not_panic() {
     let mut file = plain_house();
-    file.animate(
-        "turns",
-        0,
-        "rotation",
-        &[0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0],
-    );
+    file.animate("turns", 0, "rotation", &[0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0]);
     file.json["buffers"][0]["byteLength"] = json!(file.bin.len());
     let sound = glb(&file.json, &file.bin);
     // Where the JSON's numbers and the binary chunk are: the rest would mostly
     // be no JSON any more, and that is another module's concern.
     let json_end = sound.len() - file.bin.len() - 8;
-    let damageable: Vec<usize> = (20..sound.len())
-        .filter(|at| *at >= json_end + 8 || sound[*at].is_ascii_digit())
-        .collect();
+    let damageable: Vec<usize> =
+        (20..sound.len()).filter(|at| *at >= json_end + 8 || sound[*at].is_ascii_digit()).collect();
     let mut seed = 1_u64;
     let mut random = |below: usize| {
-        seed = seed
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
+        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (seed >> 33) as usize % below
     };
     let (mut opened, mut seen) = (0, 0);

@@ -22,9 +22,7 @@ impl Stage {
         let mut framing = Framing::new(size);
         for (part, world) in &self.placed {
             let corners = self.parts[*part].corners();
-            corners
-                .iter()
-                .for_each(|c| framing.add(world.transform_point3(*c)));
+            corners.iter().for_each(|c| framing.add(world.transform_point3(*c)));
         }
         framing.frame()
     }
@@ -51,10 +49,7 @@ fn box_part(length: f64) -> Part {
         let side = if face % 2 == 0 { 1.0_f32 } else { -1.0 };
         let first = part.vertices.len() as u32;
         for [s, t] in [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]] {
-            let mut vertex = Vertex {
-                colour: [r, g, b, 1.0],
-                ..Vertex::default()
-            };
+            let mut vertex = Vertex { colour: [r, g, b, 1.0], ..Vertex::default() };
             vertex.position[axis] = side;
             vertex.position[(axis + 1) % 3] = s * side;
             vertex.position[(axis + 2) % 3] = t;
@@ -90,32 +85,18 @@ pub(super) fn chain(count: usize, length: f64) -> Stage {
         placed.push((0, world));
         world *= DMat4::from_translation(DVec3::new(0.0, -length, 0.0));
     }
-    Stage {
-        parts: vec![box_part(length)],
-        placed,
-        ..Stage::default()
-    }
+    Stage { parts: vec![box_part(length)], placed, ..Stage::default() }
 }
 
 /// A ball of smooth normals; every other one mirrored.
 fn balls() -> Stage {
-    let mut part = empty(Material {
-        colour: [0.7, 0.35, 0.2, 1.0],
-        ..Material::default()
-    });
+    let mut part = empty(Material { colour: [0.7, 0.35, 0.2, 1.0], ..Material::default() });
     let (rings, sectors) = (24_u32, 32_u32);
     for ring in 0..=rings {
         for sector in 0..=sectors {
-            let (v, u) = (
-                f64::from(ring) / f64::from(rings),
-                f64::from(sector) / f64::from(sectors),
-            );
+            let (v, u) = (f64::from(ring) / f64::from(rings), f64::from(sector) / f64::from(sectors));
             let (down, round) = (v * std::f64::consts::PI, u * std::f64::consts::TAU);
-            let p = [
-                down.sin() * round.sin(),
-                down.cos(),
-                down.sin() * round.cos(),
-            ];
+            let p = [down.sin() * round.sin(), down.cos(), down.sin() * round.cos()];
             part.vertices.push(Vertex {
                 position: p.map(|c| c as f32),
                 normal: p.map(|c| c as f32),
@@ -134,16 +115,9 @@ fn balls() -> Stage {
     let placed = (0..4).map(|i| {
         let side = if i % 2 == 0 { 1.0 } else { -1.0 };
         let at = DVec3::new(f64::from(i) * 1.8, 0.0, f64::from(i % 2));
-        (
-            0,
-            DMat4::from_scale_rotation_translation(DVec3::new(side, 1.3, 1.0), DQuat::IDENTITY, at),
-        )
+        (0, DMat4::from_scale_rotation_translation(DVec3::new(side, 1.3, 1.0), DQuat::IDENTITY, at))
     });
-    Stage {
-        parts: vec![part],
-        placed: placed.collect(),
-        ..Stage::default()
-    }
+    Stage { parts: vec![part], placed: placed.collect(), ..Stage::default() }
 }
 
 /// A tiled texture of soft squares, on balls.
@@ -159,8 +133,7 @@ fn textured_boxes() -> Stage {
         vertex.uv = vertex.uv.map(|c| c * 3.0);
     }
     let at = |x: f64, side: f64| {
-        DMat4::from_translation(DVec3::new(x, 0.0, 0.0))
-            * DMat4::from_scale(DVec3::new(side, 1.0, 1.0))
+        DMat4::from_translation(DVec3::new(x, 0.0, 0.0)) * DMat4::from_scale(DVec3::new(side, 1.0, 1.0))
     };
     with_squares(Stage {
         parts: vec![part],
@@ -174,11 +147,8 @@ fn with_squares(mut stage: Stage) -> Stage {
         0 => [230, (x * 8) as u8, 40, 255],
         _ => [30, 90, (y * 8) as u8, 255],
     };
-    let first = Level {
-        width: 32,
-        height: 32,
-        pixels: (0..32 * 32).map(|i| pixel(i % 32, i / 32)).collect(),
-    };
+    let first =
+        Level { width: 32, height: 32, pixels: (0..32 * 32).map(|i| pixel(i % 32, i / 32)).collect() };
     stage.textures.push(Texture {
         levels: Arc::new(super::texture::levels(first)),
         wrap: [Wrap::Repeat, Wrap::Mirror],
@@ -199,21 +169,13 @@ fn glass() -> Stage {
         ..Material::default()
     };
     let mut holes = box_part(1.0);
-    holes.material = Material {
-        alpha: Alpha::Mask(0.5),
-        double_sided: true,
-        ..Material::default()
-    };
+    holes.material = Material { alpha: Alpha::Mask(0.5), double_sided: true, ..Material::default() };
     for (i, vertex) in holes.vertices.iter_mut().enumerate() {
         vertex.colour[3] = (i % 2) as f32;
     }
     stage.parts.extend([pane, holes]);
     let at = |x, y, z| DMat4::from_translation(DVec3::new(x, y, z));
-    stage.placed.extend([
-        (1, at(0.3, 0.0, 2.0)),
-        (2, at(1.6, 0.0, 0.0)),
-        (1, at(-0.8, -0.5, 1.2)),
-    ]);
+    stage.placed.extend([(1, at(0.3, 0.0, 2.0)), (2, at(1.6, 0.0, 0.0)), (1, at(-0.8, -0.5, 1.2))]);
     stage
 }
 
