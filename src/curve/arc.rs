@@ -1,11 +1,16 @@
 //! What every scheme's segment can do, and the simplest of them.
 
+use super::Rates;
 use crate::math::{Quat, Scalar, Vec3};
 
 /// A rotation as a smooth function of u in 0..=1.
 pub trait Arc {
     /// The rotation at u, a unit quaternion whose sign is continuous in u.
     fn at<S: Scalar>(&self, u: S) -> Quat<S>;
+
+    /// Bounds that hold for all u in 0..=1, in closed form: cheap, and near the truth
+    /// where the curve turns little.
+    fn rates(&self) -> Rates;
 }
 
 /// The shortest turn from one rotation to another, at constant speed.
@@ -22,6 +27,11 @@ pub(super) struct GreatArc {
 }
 
 impl GreatArc {
+    /// The logarithm of the step from start to end.
+    pub(super) fn step(&self) -> Vec3 {
+        (self.start.conjugate() * self.across).v * self.angle
+    }
+
     /// The arc from `start` to `end`, both of unit length; their signs count.
     pub(super) fn new(start: Quat, end: Quat) -> GreatArc {
         let log = (start.conjugate() * end).log();
@@ -35,6 +45,10 @@ impl Arc for GreatArc {
         let (sin, cos) = (u * S::constant(self.angle)).sin_cos();
         let (a, b) = (Quat::constant(self.start), Quat::constant(self.across));
         Quat { w: a.w * cos + b.w * sin, v: a.v * cos + b.v * sin }
+    }
+
+    fn rates(&self) -> Rates {
+        Rates { speed: self.angle, acceleration: 0.0 }
     }
 }
 

@@ -4,9 +4,9 @@
 //! B̃₁ = 1 − (1−u)³, B̃₂ = 3u² − 2u³, B̃₃ = u³.
 //! Source: Kim, Kim and Shin, SIGGRAPH 1995; docs/math/cumulative-bezier.md.
 
-use super::Arc;
 use super::arc::direction;
 use super::scheme::{End, Neighbour, Span};
+use super::{Arc, Rates};
 use crate::math::{Quat, Scalar, Vec3};
 
 /// A cumulative cubic: its first control rotation and its three steps.
@@ -45,6 +45,20 @@ impl Arc for CumulativeCubic {
             Quat { w: cos, v: Vec3::constant(axis) * sin }
         };
         Quat::constant(self.start) * step(0) * step(1) * step(2)
+    }
+
+    /// With Ad for the turns by the later factors, q⁻¹q′ = Ad₃₂ω₁ B̃₁′ + Ad₃ω₂ B̃₂′ +
+    /// ω₃ B̃₃′ and its derivative. Were all axes one, the acceleration would be
+    /// 6(1−u)(ω₂ − ω₁) + 6u(ω₃ − ω₂); what turning axes add is bounded by the vector
+    /// products of the steps, each with the largest value on 0..=1 of its polynomial.
+    /// Derived in docs/math/deviation.md.
+    fn rates(&self) -> Rates {
+        let [a, b, c] = self.steps.map(|(length, axis)| axis * length);
+        let cross = |a: Vec3, b: Vec3| a.cross(b).length();
+        let straight = 6.0 * (b - a).length().max((c - b).length());
+        let turning = (6.0 + 1.4 * self.steps[2].0) * cross(a, b) + 2.1 * cross(a, c) + 12.0 * cross(b, c);
+        let longest = self.steps.iter().map(|step| step.0).fold(0.0, f64::max);
+        Rates { speed: 3.0 * longest, acceleration: straight + turning }
     }
 }
 

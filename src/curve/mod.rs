@@ -13,6 +13,7 @@ mod catmull_rom;
 mod cumulative;
 mod ends;
 mod motion;
+mod rates;
 mod scheme;
 mod slerp;
 mod squad;
@@ -21,6 +22,7 @@ mod warnings;
 pub use arc::Arc;
 pub use ends::{Ends, NotClosed, ramp_start};
 pub use motion::{Motion, Piece};
+pub use rates::Rates;
 pub use scheme::{Scheme, Smoothness};
 pub use warnings::warnings;
 

@@ -2,7 +2,7 @@
 
 use super::arc::GreatArc;
 use super::scheme::{End, Neighbour, Segment, Span};
-use super::{Arc, Ends, Scheme, ramp_start};
+use super::{Arc, Ends, Rates, Scheme, ramp_start};
 use crate::math::{Quat, Scalar};
 
 /// The motion of one box: its keys, the scheme between them, and the ends.
@@ -52,6 +52,14 @@ impl Arc for Piece {
             Shape::Rest(q) => Quat::constant(*q),
             Shape::Ramp(arc) => arc.at(u),
             Shape::Segment(segment) => segment.at(u),
+        }
+    }
+
+    fn rates(&self) -> Rates {
+        match &self.shape {
+            Shape::Rest(_) => Rates { speed: 0.0, acceleration: 0.0 },
+            Shape::Ramp(arc) => arc.rates(),
+            Shape::Segment(segment) => segment.rates(),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The list of schemes, and what each of them is asked for.
 
-use super::{Arc, bessel, bessel_overhauser, catmull_rom, slerp, squad};
+use super::{Arc, Rates, bessel, bessel_overhauser, catmull_rom, slerp, squad};
 use crate::math::{Quat, Scalar};
 
 /// Where a scheme's motion has no jumps in speed.
@@ -90,6 +90,10 @@ macro_rules! schemes {
         impl Arc for Segment {
             fn at<S: Scalar>(&self, u: S) -> Quat<S> {
                 match self { $(Segment::$name(arc) => arc.at(u),)* }
+            }
+
+            fn rates(&self) -> Rates {
+                match self { $(Segment::$name(arc) => arc.rates(),)* }
             }
         }
     };

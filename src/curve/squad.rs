@@ -1,8 +1,8 @@
 //! `squad`: a slerp between two slerps, one of keys and one of control rotations.
 
-use super::Arc;
 use super::arc::GreatArc;
 use super::scheme::{End, Neighbour, Rule, Smoothness, Span};
+use super::{Arc, Rates};
 use crate::math::{Quat, Scalar};
 
 /// Shoemake 1987; docs/math/squad.md.
@@ -33,6 +33,29 @@ impl Arc for SquadArc {
         let key = self.keys.at(u);
         let across = (key.conjugate() * self.controls.at(u)).smooth_log();
         key * Quat::exp(across * (S::constant(2.0) * u * (S::constant(1.0) - u)))
+    }
+
+    /// With p and s the two inner arcs, which turn at constant P and S, L = log p⁻¹s and
+    /// X = 2u(1−u) L, q = p exp X: its acceleration is at most
+    /// 2|P||X′| + |X″| + e^{2|X|}|X′|². L′ and L″ follow from ρ = S − Ad(r⁻¹) P, the
+    /// velocity of r = p⁻¹s. Derived in docs/math/deviation.md.
+    fn rates(&self) -> Rates {
+        let (p, s) = (self.keys.step(), self.controls.step());
+        let log = |u: f64| (self.keys.at(u).conjugate() * self.controls.at(u)).log().length();
+        // r moves by at most |P| + |S| in all, and an end is never further than half.
+        let theta =
+            log(0.0).max(log(1.0)) + 0.5 * (p.length() + s.length()).min((s - p).length() + 2.0 * p.length());
+        if theta >= 1.5 {
+            return Rates { speed: f64::INFINITY, acceleration: f64::INFINITY };
+        }
+        let rho = (s - p).length() + 2.0 * theta.sin() * p.length();
+        let stretch = theta / theta.sin().max(f64::MIN_POSITIVE);
+        let stretch = if theta == 0.0 { 1.0 } else { stretch };
+        let log1 = stretch * rho;
+        let log2 = stretch * (2.0 * p.length() * rho + (2.0 * theta).exp() * log1 * log1);
+        let x1 = 2.0 * theta + 0.5 * log1;
+        let x2 = 4.0 * theta + 4.0 * log1 + 0.5 * log2;
+        Rates { speed: p.length() + x1, acceleration: 2.0 * p.length() * x1 + x2 + theta.exp() * x1 * x1 }
     }
 }
 

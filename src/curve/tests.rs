@@ -1,7 +1,7 @@
 //! What every scheme must do, whatever its formula.
 
 use super::*;
-use crate::math::{Jet, Quat, Vec3};
+use crate::math::{Interval, Jet, Quat, Vec3};
 
 const UNEVEN: [f64; 7] = [0.0, 0.7, 1.0, 2.2, 2.9, 4.4, 5.0];
 const EVEN: [f64; 7] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
@@ -296,4 +296,41 @@ fn opposite_neighbours_of_catmull_rom_use_two_logarithms() {
     let (before, after) = velocities(&motion, 1);
     assert!((before - Vec3::new(0.0, 0.0, std::f64::consts::FRAC_PI_2)).length() < 1e-9);
     assert!((before - after).length() < 1e-12);
+}
+
+#[test]
+fn rates_bound_the_derivatives() {
+    let small: Vec<Quat> = keys().iter().map(|q| Quat::exp(q.log() * 0.05)).collect();
+    for keys in [keys(), closed_keys(), small] {
+        each(|scheme, ends| {
+            let motion = Motion::new(&UNEVEN, &keys, scheme, ends);
+            for (i, pair) in UNEVEN.windows(2).enumerate() {
+                let piece = motion.piece(i, pair[1].next_down());
+                let (whole, first_tenth) = (piece.rates(), Rates::within(&piece, Interval::new(0.0, 0.1)));
+                for k in 0..=100 {
+                    let jet = piece.at(Jet::variable(0.01 * f64::from(k)));
+                    let (v, a) = (jet.half_velocity().length(), jet.half_acceleration().length());
+                    let name = format!("{} {} segment {i}", scheme.name(), ends.name());
+                    // Derivatives by jets round to about 1e-13 of their terms.
+                    let holds = |rates: Rates| v <= rates.speed + 1e-12 && a <= rates.acceleration + 1e-12;
+                    assert!(holds(whole), "{name}: {v} {a} {whole:?}");
+                    assert!(k > 10 || holds(first_tenth), "{name}: {v} {a} {first_tenth:?}");
+                }
+            }
+        });
+    }
+}
+
+#[test]
+fn rates_are_near_the_truth_where_steps_are_small() {
+    let keys: Vec<Quat> = keys().iter().map(|q| Quat::exp(q.log() * 0.01)).collect();
+    for &scheme in &Scheme::ALL[2..] {
+        let motion = Motion::new(&EVEN, &keys, scheme, Ends::Natural);
+        for i in 0..6 {
+            let piece = motion.piece(i, EVEN[i]);
+            let at = |u: f64| piece.at(Jet::variable(u)).half_acceleration().length();
+            let truth = (0..=100).map(|k| at(0.01 * f64::from(k))).fold(0.0, f64::max);
+            assert!(piece.rates().acceleration < 1.1 * truth, "{} {i}", scheme.name());
+        }
+    }
 }

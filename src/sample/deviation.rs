@@ -4,18 +4,18 @@
 //! stretch of h seconds within one smooth piece, let f be the distance of the two as
 //! unit quaternions (half the angle), A the largest half angular acceleration of the
 //! motion, and v the larger of both speeds in the same unit. The second variation of
-//! distance on the unit sphere gives f″ ≥ −A − 2v² tan(f/2), so that with M the larger
-//! of f at both ends
+//! distance on the unit sphere gives f″ ≥ −A − 2v² tan(f/2): f stays below the parabola
+//! through both its ends whose second derivative is −(A + 1.1 v² F), as long as its peak
+//! F is at most 1.
 //!
-//! f ≤ M + h²/8 (A + 1.1 v² f)   while f ≤ 1.
-//!
-//! A and v come from interval arithmetic on the motion's derivatives, which holds for
-//! all u of the stretch at once. Stretches whose bound is much above the worst that was
-//! found are halved. The whole argument: docs/math/deviation.md.
+//! A and v are known of a whole piece in closed form. Where the bound from these is
+//! much above the worst that was found, the stretch is halved, and after some halvings
+//! interval arithmetic bounds A and v on the stretch alone. The whole argument:
+//! docs/math/deviation.md.
 
 use super::rotations::written;
-use crate::curve::{Arc, Motion, Piece};
-use crate::math::{Interval, Jet, Quat};
+use crate::curve::{Arc, Motion, Piece, Rates};
+use crate::math::{Interval, Quat};
 use std::f64::consts::FRAC_PI_2;
 
 /// Samples of a motion: exact, and as written.
@@ -31,7 +31,9 @@ const SLACK: f64 = 1.05;
 /// What is not worth refining, radians: below float32's own rounding.
 const NEGLIGIBLE: f64 = 2e-8;
 /// How often a stretch between two samples is halved at most.
-const DEPTH: u32 = 12;
+const DEPTH: u32 = 14;
+/// How often it is halved before its own rates are worked out.
+const CHEAP: u32 = 3;
 
 /// An upper bound, radians, of the angle between motion and playback.
 pub(super) fn upper_bound(stretch: &Stretch) -> f64 {
@@ -116,20 +118,22 @@ impl<'a> Search<'a> {
 
     /// Bounds the intervals between the samples i..=j, all within the piece.
     fn within(&mut self, piece: &Piece, i: usize, j: usize) {
+        let (from, to) = (self.time(i), self.time(j));
         let longest = (i..j).map(|k| self.time(k + 1) - self.time(k)).fold(0.0, f64::max);
         let ends = self.at_samples[i..=j].iter().copied().fold(0.0, f64::max);
         let speed = (i..j).map(|k| self.playback_speed(k)).fold(0.0, f64::max);
-        let bound = self.bound_of(piece, self.time(i), self.time(j), longest, ends, speed);
-        if bound <= self.good_enough() {
-            self.bound = self.bound.max(bound);
-        } else if j - i > 1 {
+        let mut accept = |rates: Rates| self.accept(bound(rates, longest, ends, ends, speed));
+        if accept(whole(piece)) || accept(on_stretch(piece, from, to)) {
+            return;
+        }
+        if j - i > 1 {
             let middle = i + (j - i) / 2;
             self.within(piece, i, middle);
             self.within(piece, middle, j);
         } else {
             let (at_from, at_to) = (self.at_samples[i], self.at_samples[j]);
-            let part = Part { sample: i, from: self.time(i), to: self.time(j), at_from, at_to };
-            self.halve(piece, part, DEPTH);
+            let part = Part { sample: i, from, to, at_from, at_to };
+            self.halve(piece, part, DEPTH - CHEAP);
         }
     }
 
@@ -150,14 +154,33 @@ impl<'a> Search<'a> {
     }
 
     fn part(&mut self, piece: &Piece, part: Part, depth: u32) {
-        let speed = self.playback_speed(part.sample);
-        let ends = part.at_from.max(part.at_to);
-        let bound = self.bound_of(piece, part.from, part.to, part.to - part.from, ends, speed);
-        if bound <= self.good_enough() || depth == 0 {
-            self.bound = self.bound.max(bound);
+        let Part { sample, from, to, at_from, at_to } = part;
+        let playback = self.playback_speed(sample);
+        let bound_by = |rates: Rates| bound(rates, to - from, at_from, at_to, playback);
+        let mut rates = whole(piece);
+        if self.accept(bound_by(rates)) {
+            return;
+        }
+        if depth <= DEPTH - CHEAP {
+            rates = rates.and(on_stretch(piece, from, to));
+            if self.accept(bound_by(rates)) {
+                return;
+            }
+        }
+        if depth == 0 {
+            self.bound = self.bound.max(bound_by(rates));
         } else {
             self.halve(piece, part, depth);
         }
+    }
+
+    /// Takes a bound if it is near enough to the worst that was found.
+    fn accept(&mut self, bound: f64) -> bool {
+        let good = bound <= self.good_enough();
+        if good {
+            self.bound = self.bound.max(bound);
+        }
+        good
     }
 
     fn halve(&mut self, piece: &Piece, part: Part, depth: u32) {
@@ -172,25 +195,44 @@ impl<'a> Search<'a> {
     fn playback_speed(&self, k: usize) -> f64 {
         0.5 * self.playback[k].angle_to(self.playback[k + 1]) / (self.time(k + 1) - self.time(k))
     }
+}
 
-    /// The bound of the head of this file for stretches of at most h seconds between the
-    /// times from..to, with M = `ends`.
-    fn bound_of(&self, piece: &Piece, from: f64, to: f64, h: f64, ends: f64, playback: f64) -> f64 {
-        let u = Interval::new(piece.parameter(from), piece.parameter(to));
-        let jet = piece.at(Jet::variable(u));
-        let duration = piece.duration();
-        let speed = jet.half_velocity().longest() / duration;
-        let acceleration = jet.half_acceleration().longest() / (duration * duration);
-        let v = speed.max(playback);
-        let sagitta = h * h / 8.0;
-        let curvature = 1.1 * v * v * sagitta;
-        let smooth = (ends + acceleration * sagitta) / (1.0 - curvature);
-        let steady = ends + 0.5 * h * (speed + playback);
-        let usable = curvature < 0.5 && smooth <= 1.0;
-        let bound = if usable { smooth.min(steady) } else { steady };
-        // f64::min takes the number where the other is none: an unknown bound is the
-        // largest angle there is.
-        bound.min(FRAC_PI_2)
+/// Rates of a whole piece.
+fn whole(piece: &Piece) -> Rates {
+    piece.rates().per_second(piece.duration())
+}
+
+/// Rates of a piece between two times.
+fn on_stretch(piece: &Piece, from: f64, to: f64) -> Rates {
+    let u = Interval::new(piece.parameter(from), piece.parameter(to));
+    Rates::within(piece, u).per_second(piece.duration())
+}
+
+/// The bound of the head of this file on a stretch of h seconds, with half the angle at
+/// either end and half the angular speed of playback.
+fn bound(rates: Rates, h: f64, at_from: f64, at_to: f64, playback: f64) -> f64 {
+    let v = rates.speed.max(playback);
+    let steady = at_from.max(at_to) + 0.5 * h * (rates.speed + playback);
+    // f64::min takes the number where the other is none: an unknown bound is the largest
+    // angle there is.
+    if steady.is_nan() || steady > 1.0 {
+        return steady.min(FRAC_PI_2);
+    }
+    // The peak raises the curvature that bounds it. Twice around from what holds in any
+    // case takes off all but the last digits.
+    let peak = |f: f64| parabola_peak(at_from, at_to, h * h / 8.0 * (rates.acceleration + 1.1 * v * v * f));
+    let first = peak(steady).min(steady);
+    peak(first).min(first)
+}
+
+/// The peak of the parabola through a at one end and b at the other that rises by
+/// `sagitta` above the middle of their chord.
+fn parabola_peak(a: f64, b: f64, sagitta: f64) -> f64 {
+    let slope = b - a;
+    if slope.abs() >= 4.0 * sagitta {
+        a.max(b)
+    } else {
+        0.5 * (a + b) + sagitta + slope * slope / (16.0 * sagitta)
     }
 }
 
