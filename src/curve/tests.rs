@@ -326,8 +326,8 @@ fn rates_are_near_the_truth_where_steps_are_small() {
     let keys: Vec<Quat> = keys().iter().map(|q| Quat::exp(q.log() * 0.01)).collect();
     for &scheme in &Scheme::ALL[2..] {
         let motion = Motion::new(&EVEN, &keys, scheme, Ends::Natural);
-        for i in 0..6 {
-            let piece = motion.piece(i, EVEN[i]);
+        for (i, &t) in EVEN[..6].iter().enumerate() {
+            let piece = motion.piece(i, t);
             let at = |u: f64| piece.at(Jet::variable(u)).half_acceleration().length();
             let truth = (0..=100).map(|k| at(0.01 * f64::from(k))).fold(0.0, f64::max);
             assert!(piece.rates().acceleration < 1.1 * truth, "{} {i}", scheme.name());
