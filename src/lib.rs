@@ -27,3 +27,8 @@ pub mod read;
 pub mod render;
 pub mod sample;
 pub mod write;
+
+/// The README's example, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -15,7 +15,9 @@ Exit codes: 0 done, 1 input refused, 2 usage, 3 output failed its check, 4 envir
 /// Turns quaternion keyframes into glTF animations that play right everywhere.
 #[derive(Debug, Parser)]
 #[command(name = "dat2glb", version, arg_required_else_help = true, after_help = EXIT_CODES)]
-#[command(override_usage = "dat2glb <COMMAND> …\n       dat2glb <IN.dat> [OUT.glb] [OPTIONS]    short for convert")]
+#[command(
+    override_usage = "dat2glb <COMMAND> …\n       dat2glb <IN.dat> [OUT.glb] [OPTIONS]    short for convert"
+)]
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,

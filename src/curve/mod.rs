@@ -4,7 +4,7 @@
 //! either side; [`Ends`] says what stands in for the neighbours the first and last
 //! segment lack; a [`Motion`] is one track's keys with both.
 //!
-//! A further scheme is a file here, a line in [`scheme`] and a page in docs/math.
+//! A further scheme is a file here, a line in `scheme.rs` and a page in docs/math.
 
 mod arc;
 mod bessel;

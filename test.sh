@@ -1,0 +1,54 @@
+#!/usr/bin/env bash
+# Runs every test. Installs what only the tests need: a software graphics adapter where
+# there is none (Debian's mesa-vulkan-drivers), Node.js and the Khronos glTF validator.
+# Nothing is skipped: what cannot be installed is named, and the run fails.
+set -euo pipefail
+cd "$(dirname "$0")"
+
+VALIDATOR=gltf-validator@2.0.0-dev.3.10
+
+say() { printf '\n== %s\n' "$*"; }
+
+install() { # PACKAGE... of Debian and its kin
+  command -v apt-get >/dev/null || { echo "please install: $*" >&2; exit 1; }
+  local as_root=()
+  [ "$(id -u)" = 0 ] || as_root=(sudo)
+  "${as_root[@]}" apt-get update -qq
+  DEBIAN_FRONTEND=noninteractive "${as_root[@]}" apt-get install -y -qq --no-install-recommends "$@" >/dev/null
+}
+
+has_adapter() { # a Vulkan driver's manifest, or a system that brings its own adapter
+  case "$(uname -s)" in Linux) ;; *) return 0 ;; esac
+  compgen -G '/usr/share/vulkan/icd.d/*.json' >/dev/null || compgen -G '/etc/vulkan/icd.d/*.json' >/dev/null
+}
+
+has_adapter || { say "installing a software graphics adapter"; install mesa-vulkan-drivers; }
+command -v npm >/dev/null || { say "installing Node.js"; install nodejs npm; }
+if [ ! -d .tools/node_modules/gltf-validator ]; then
+  say "installing $VALIDATOR"
+  npm install --prefix .tools --no-audit --no-fund --loglevel=error "$VALIDATOR"
+fi
+
+# Keeps Mesa's device selection from printing; makes a missing adapter a failure.
+export NODEVICE_SELECT=1 DAT2GLB_REQUIRE_ADAPTER=1
+
+say "cargo test"
+cargo test
+
+say "Khronos validator over every fixture's output"
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+dat2glb=target/debug/dat2glb
+for scheme in all slerp bessel; do
+  mkdir "$out/$scheme"
+  "$dat2glb" convert fixtures/keyframes/*.dat -o "$out/$scheme/" --scheme "$scheme" -q
+done
+mkdir "$out/ends"
+for ends in natural clamped repeat closed hold; do
+  "$dat2glb" convert fixtures/keyframes/closed-loop.dat -o "$out/ends/$ends.gltf" --ends "$ends" -q
+  "$dat2glb" convert fixtures/keyframes/closed-loop.dat -o "$out/ends/$ends.glb" --ends "$ends" --no-key-times -q
+done
+for kind in chain body; do
+  "$dat2glb" example "$kind" | "$dat2glb" convert - -o "$out/$kind.glb" -q
+done
+node tests/validator/validate.mjs .tools/node_modules "$out"
