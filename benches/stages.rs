@@ -73,7 +73,11 @@ fn sample(bencher: Bencher, scheme: &str) {
     let motions: Vec<Motion> =
         clip.tracks.iter().map(|track| Motion::new(&clip.times, track, scheme, Ends::Natural)).collect();
     bencher.counter(ItemsCount::new(4 * timeline.len())).bench(|| {
-        rotations(&motions, &timeline, |chunk| Ok::<(), ()>(drop(black_box(chunk.to_vec())))).unwrap()
+        rotations(&motions, &timeline, |chunk| {
+            black_box(chunk.to_vec());
+            Ok::<(), ()>(())
+        })
+        .unwrap()
     });
 }
 

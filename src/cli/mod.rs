@@ -77,13 +77,25 @@ fn completions(shell: clap_complete::Shell) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
+/// One page: the tool, then each command as a section of its own.
 fn man() -> Result<Exit, Failure> {
-    let mut page = Vec::new();
     let mut command = Cli::command();
     command.build();
+    let mut page = Vec::new();
     clap_mangen::Man::new(command.clone()).render(&mut page)?;
+    // The crate refers to pages of their own, which there are none of.
+    let page = String::from_utf8_lossy(&page).replace("dat2glb\\-", "dat2glb ").replace("(1)\n", "\n");
+    let mut page = page.into_bytes();
     for subcommand in command.get_subcommands().filter(|c| c.get_name() != "help") {
-        clap_mangen::Man::new(subcommand.clone()).render(&mut page)?;
+        let man = clap_mangen::Man::new(subcommand.clone());
+        let mut section = Vec::new();
+        man.render_synopsis_section(&mut section)?;
+        man.render_description_section(&mut section)?;
+        if subcommand.get_arguments().any(|argument| !argument.is_hide_set()) {
+            man.render_options_section(&mut section)?;
+        }
+        let section = String::from_utf8_lossy(&section).replace("\n.SH ", "\n.SS ");
+        write!(page, ".SH \"DAT2GLB {}\"\n{section}", subcommand.get_name().to_uppercase())?;
     }
     io::stdout().write_all(&page)?;
     Ok(Exit::Done)
