@@ -171,7 +171,7 @@ impl Rotations<'_> {
                 Code::RotationJump,
                 place,
                 format!(
-                    "jumps {} times within 1.5 ms, by {:.1}° to {worst}",
+                    "jumps within 1.5 ms ({} in all), by {:.1}° to {worst}",
                     self.jumps.count, worst.measure
                 ),
             );

@@ -118,7 +118,7 @@ fn print(file: &Path, options: &Check, report: &Report, motions: &[ClipMotion]) 
                 ("between", motion.difference.between),
             ];
             let angles: Vec<String> = kinds
-                .map(|(kind, largest)| format!("{kind} {:.2e}° at {:.3} s", largest.degrees, largest.time))
+                .map(|(kind, largest)| format!("{kind} {} at {:.3} s", angle(largest.degrees), largest.time))
                 .into();
             writeln!(out, "{name}:   {}: {}{limit}", motion.node, angles.join(", "))?;
         }
@@ -130,4 +130,9 @@ fn print(file: &Path, options: &Check, report: &Report, motions: &[ClipMotion]) 
     };
     let (errors, warnings) = (count(Severity::Error, "error"), count(Severity::Warning, "warning"));
     writeln!(out, "{name}: {errors}, {warnings}, {}", count(Severity::Info, "info"))
+}
+
+/// An angle for people: tiny ones by their order.
+fn angle(degrees: f64) -> String {
+    if degrees < 1e-3 { format!("{degrees:.1e}°") } else { format!("{degrees:.4}°") }
 }
