@@ -176,7 +176,16 @@ pub(crate) struct Inspect {
 pub(crate) struct Example {
     /// Which kind of input
     #[arg(value_enum)]
-    pub(crate) kind: super::example::Kind,
+    pub(crate) kind: Kind,
+}
+
+/// A kind of input.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub(crate) enum Kind {
+    /// A chain of three boxes that swing
+    Chain,
+    /// One free body that tumbles, in the order x y z w
+    Body,
 }
 
 #[derive(Args, Debug)]

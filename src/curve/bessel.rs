@@ -1,7 +1,7 @@
 //! `bessel`: the velocity at a key is the time-weighted mean of those around it.
 
 use super::cumulative::{Corner, CumulativeCubic, from_handles};
-use super::scheme::{Rule, Smoothness, Span};
+use super::rule::{Rule, Smoothness, Span};
 use crate::math::Vec3;
 
 /// Bessel's tangents (de Boor 1978) on angular velocities; docs/math/bessel.md.

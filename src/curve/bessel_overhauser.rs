@@ -1,7 +1,7 @@
 //! `bessel-overhauser`: `bessel` by powers and products of quaternions.
 
 use super::cumulative::{Corner, CumulativeCubic, from_handles, log_of_product};
-use super::scheme::{Rule, Smoothness, Span};
+use super::rule::{Rule, Smoothness, Span};
 use crate::math::{Quat, Vec3};
 
 /// Bessel's tangents as a product of powers; docs/math/bessel-overhauser.md.

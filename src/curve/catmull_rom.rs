@@ -1,7 +1,7 @@
 //! `catmull-rom`: at each key the curve runs parallel to the chord of its neighbours.
 
 use super::cumulative::{Corner, CumulativeCubic, from_handles, log_of_product};
-use super::scheme::{Rule, Smoothness, Span};
+use super::rule::{Rule, Smoothness, Span};
 use crate::math::Vec3;
 
 /// Catmull and Rom 1974, for rotations in the form of Kim, Kim and Shin 1995;

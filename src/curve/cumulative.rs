@@ -5,7 +5,7 @@
 //! Source: Kim, Kim and Shin, SIGGRAPH 1995; docs/math/cumulative-bezier.md.
 
 use super::arc::direction;
-use super::scheme::{End, Neighbour, Span};
+use super::rule::{End, Neighbour, Span};
 use super::{Arc, Rates};
 use crate::math::{Quat, Scalar, Vec3};
 

@@ -14,6 +14,7 @@ mod cumulative;
 mod ends;
 mod motion;
 mod rates;
+mod rule;
 mod scheme;
 mod slerp;
 mod squad;
@@ -23,7 +24,8 @@ pub use arc::Arc;
 pub use ends::{Ends, NotClosed, ramp_start};
 pub use motion::{Motion, Piece};
 pub use rates::Rates;
-pub use scheme::{Scheme, Smoothness};
+pub use rule::Smoothness;
+pub use scheme::Scheme;
 pub use warnings::warnings;
 
 #[cfg(test)]

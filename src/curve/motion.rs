@@ -1,7 +1,8 @@
 //! One track's keys as a function of time.
 
 use super::arc::GreatArc;
-use super::scheme::{End, Neighbour, Segment, Span};
+use super::rule::{End, Neighbour, Span};
+use super::scheme::Segment;
 use super::{Arc, Ends, Rates, Scheme, ramp_start};
 use crate::math::{Quat, Scalar};
 

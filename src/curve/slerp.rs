@@ -1,7 +1,7 @@
 //! `slerp`: constant speed from key to key, a corner at each.
 
 use super::arc::GreatArc;
-use super::scheme::{Rule, Smoothness, Span};
+use super::rule::{Rule, Smoothness, Span};
 
 /// Shoemake 1985; docs/math/slerp.md.
 pub(super) struct Slerp;

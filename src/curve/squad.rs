@@ -1,7 +1,7 @@
 //! `squad`: a slerp between two slerps, one of keys and one of control rotations.
 
 use super::arc::GreatArc;
-use super::scheme::{End, Neighbour, Rule, Smoothness, Span};
+use super::rule::{End, Neighbour, Rule, Smoothness, Span};
 use super::{Arc, Rates};
 use crate::math::{Quat, Scalar};
 

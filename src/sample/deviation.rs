@@ -13,7 +13,6 @@
 //! interval arithmetic bounds A and v on the stretch alone. The whole argument:
 //! docs/math/deviation.md.
 
-use super::rotations::written;
 use crate::curve::{Arc, Motion, Piece, Rates};
 use crate::math::{Interval, Quat};
 use std::f64::consts::FRAC_PI_2;
@@ -24,6 +23,13 @@ pub(super) struct Stretch<'a> {
     pub(super) times: &'a [f32],
     pub(super) exact: &'a [Quat],
     pub(super) written: &'a [[f32; 4]],
+}
+
+/// The written numbers as the unit quaternion they stand for.
+pub(super) fn written(q: [f32; 4]) -> Quat {
+    let q = Quat::from_xyzw(q.map(f64::from));
+    let scale = 1.0 / q.norm();
+    Quat { w: q.w * scale, v: q.v * scale }
 }
 
 /// How much the bound may exceed the worst that was found.

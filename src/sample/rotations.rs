@@ -1,7 +1,7 @@
 //! Every track at every sample time, in order and in parallel.
 
 use super::Timeline;
-use super::deviation::{self, Stretch};
+use super::deviation::{self, Stretch, written};
 use crate::curve::{Arc, Motion, Piece};
 use crate::math::Quat;
 use rayon::prelude::*;
@@ -124,13 +124,6 @@ fn align(rotations: &mut [[f32; 4]]) -> bool {
 
 fn negate(q: &mut [f32; 4]) {
     *q = q.map(|x| -x);
-}
-
-/// The written numbers as the unit quaternion they stand for.
-pub(super) fn written(q: [f32; 4]) -> Quat {
-    let q = Quat::from_xyzw(q.map(f64::from));
-    let scale = 1.0 / q.norm();
-    Quat { w: q.w * scale, v: q.v * scale }
 }
 
 fn steps(motion: &Motion, times: &[f32], rotations: &[[f32; 4]]) -> Steps {
