@@ -172,15 +172,18 @@ fn check(keys: &[f64], fps: Fps, key_times: bool) -> Result<(), TooFine> {
         return Err(TooFine::Keys { key: 0 });
     }
     let interval = fps.interval();
-    let latest = fps.time(fps.frame_near(last)).min(last) as f32;
-    let resolution = spacing_below(latest);
-    if interval >= resolution || interval > last {
+    // The last frame, but for rates so high that its number does not fit.
+    let latest = match fps.frame_near(last) {
+        u64::MAX => last,
+        frame => fps.time(frame).min(last),
+    };
+    if interval >= spacing_below(latest as f32) || interval > last {
         return Ok(());
     }
     // From 2ᵉ on float32 numbers are 2ᵉ⁻²³ apart: frames fall together from the first
     // power of two where that exceeds their interval.
     let time = 2f64.powi(24 + interval.log2().floor() as i32);
-    let largest_fps = Fps::at_most(1.0 / resolution).expect("LONGEST leaves a rate");
+    let largest_fps = Fps::at_most(1.0 / spacing_below(last as f32)).expect("LONGEST leaves a rate");
     Err(TooFine::Frames { time: time.min(last), interval, largest_fps })
 }
 
