@@ -271,13 +271,14 @@ fn samples_next_to_keys_give_way() {
 #[test]
 fn many_samples_join_without_a_seam() {
     let folder = tempfile::tempdir().unwrap();
-    for name in ["body-free", "mixed-signs"] {
+    // After a half turn the curve itself may go on with the other sign.
+    for name in ["body-free", "half-turn"] {
         let clip = read_clip(&keyframes(name));
-        let schemes = [Scheme::Squad, Scheme::Bessel];
-        let loaded = convert(name, &["--scheme", "squad,bessel", "--fps", "2000"], folder.path());
+        let schemes = [Scheme::Slerp, Scheme::Bessel];
+        let loaded = convert(name, &["--scheme", "slerp,bessel", "--fps", "2000"], folder.path());
         for (found, channel, motion) in channels(&loaded, &clip, &schemes, Ends::Natural) {
             let what = format!("{} {}", found.name, channel.node);
-            assert!(channel.times.len() > 3 * 4096, "{what}: {}", channel.times.len());
+            assert!(channel.times.len() > 2 * 4096, "{what}: {}", channel.times.len());
             check_times(channel, &clip.times, &what);
             check_rotations(channel, &what);
             check_samples(channel, &motion, &what);
@@ -293,10 +294,10 @@ fn late_samples_are_as_exact_as_early_ones() {
     let text =
         "# 1\n0 1 0 0 0\n40000.3 .8 .6 0 0\n40001.21 .6 0 .8 0\n40002.1 .28 .96 0 0\n40002.901 1 0 0 0\n";
     std::fs::write(&input, text).unwrap();
-    run([input.to_str().unwrap(), "--fps", "10"]).exits(0);
+    run([input.to_str().unwrap(), "--fps", "13/10"]).exits(0);
     let (clip, loaded) = (read_clip(&input), load(&input.with_extension("glb")));
     for (_, channel, motion) in channels(&loaded, &clip, &[Scheme::Bessel], Ends::Natural) {
-        assert!(channel.times.len() > 400_000 && channel.speed(40_001.0) > 50.0);
+        assert!(channel.times.len() > 50_000 && channel.speed(40_001.0) > 50.0);
         check_samples(channel, &motion, "late");
         check_keys(channel, &motion, &clip.times, "late");
     }
