@@ -43,8 +43,8 @@ pub enum Error {
     /// Keys that float32 cannot tell apart.
     #[error(
         "{source_name}:{}: the keys in lines {} and {} are so close that float32, glTF's number for times, \
-         cannot tell them apart at {seconds} s; leave one of them out, or say --no-key-times",
-        .lines.1, .lines.0, .lines.1
+         cannot tell them apart {seconds} s after the first key; leave one of them out{}",
+        .lines.1, .lines.0, .lines.1, if *.key_times { ", or say --no-key-times" } else { "" }
     )]
     KeysTooClose {
         /// The input's name.
@@ -53,23 +53,30 @@ pub enum Error {
         lines: (usize, usize),
         /// When the first of them is, from the first key on.
         seconds: f64,
+        /// Whether leaving the key times out helps.
+        key_times: bool,
     },
     /// More than a .glb can hold.
     #[error(
-        "{source_name}: the output would have {:.2} GiB, and a .glb ends at 4 GiB; sample at --fps {largest_fps} \
-         or less{}, choose fewer schemes, or write a .gltf",
-        *.bytes as f64 / (1u64 << 30) as f64, if *.key_times { " with --no-key-times" } else { "" }
+        "{source_name}: the output would have {:.2} GiB, and a .glb ends at 4 GiB; {}choose \
+         fewer schemes, or write a .gltf",
+        *.bytes as f64 / (1u64 << 30) as f64, advice(*.largest_fps, *.key_times)
     )]
     TooLarge {
         /// The input's name.
         source_name: String,
         /// How large it would be.
         bytes: u64,
-        /// A rate at which it fits.
-        largest_fps: u64,
-        /// Whether key times are written.
+        /// A rate at which it fits, if there is one.
+        largest_fps: Option<Fps>,
+        /// Whether it fits with the key times.
         key_times: bool,
     },
+}
+
+fn advice(largest_fps: Option<Fps>, key_times: bool) -> String {
+    let flag = if key_times { "" } else { " with --no-key-times" };
+    largest_fps.map_or(String::new(), |fps| format!("sample at --fps {fps} or less{flag}, "))
 }
 
 /// What a clip of the output is made from, as its `extras` say it.
@@ -206,10 +213,14 @@ impl<'a> Plan<'a> {
         let clip = &self.keyframes.clip;
         let sample = 16 * clip.tracks.len() as u64 + 4;
         let room = LARGEST_GLB - glb_size(json, self.scene.bytes().len() as u64);
-        let samples = room / sample / self.timelines.len() as u64;
-        let largest_fps = ((samples as f64 - 2.0) / clip.duration()) as u64;
+        let samples = room as f64 / sample as f64 / self.timelines.len() as f64;
+        let rate = |others: usize| Fps::at_most((samples - others as f64) / clip.duration());
+        // Both ends, and the start of a ramp.
+        let with_keys = rate(clip.times.len() + 3).filter(|_| self.options.key_times);
         let source_name = self.source_name.to_owned();
-        Err(Error::TooLarge { source_name, bytes, largest_fps, key_times: self.options.key_times })
+        let largest_fps = with_keys.or_else(|| rate(3));
+        let key_times = with_keys.is_some() || !self.options.key_times;
+        Err(Error::TooLarge { source_name, bytes, largest_fps, key_times })
     }
 
     fn binary_length(&self) -> u64 {
@@ -348,7 +359,8 @@ fn too_fine(error: TooFine, clip: &Clip, source_name: &str) -> Error {
     match error {
         TooFine::Keys { key } => {
             let lines = (clip.lines.of(key), clip.lines.of(key + 1));
-            Error::KeysTooClose { source_name, lines, seconds: clip.times[key] }
+            let key_times = clip.duration() as f32 > 0.0;
+            Error::KeysTooClose { source_name, lines, seconds: clip.times[key], key_times }
         }
         other => Error::TooFine(source_name, other),
     }

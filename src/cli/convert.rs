@@ -63,6 +63,10 @@ fn jobs(options: &Convert) -> Result<Vec<Job>, Failure> {
             other => other.cloned(),
         };
         check_ending(&output)?;
+        if thumbnail.as_ref() == Some(&output) {
+            let output = output.display();
+            return Err(Failure::usage(format!("{output}: expected a name of its own for the thumbnail")));
+        }
         if let Some(twin) = jobs.iter().find(|job| job.output == output) {
             let (a, b, output) = (twin.input.display(), input.display(), output.display());
             return Err(Failure::usage(format!("{a} and {b} would both become {output}")));

@@ -38,8 +38,12 @@ impl Output {
     pub(super) fn create(path: &Path, inputs: &[PathBuf]) -> Result<Output, Failure> {
         let shown = path.display().to_string();
         let fail = |error: io::Error| Failure::environment(format!("{shown}: cannot be written: {error}"));
-        let path = follow(path).map_err(fail)?;
-        let existing = fs::metadata(&path).ok();
+        let existing = fs::metadata(path).ok();
+        // What /dev/stdout leads to has no path of its own when it is a pipe.
+        let path = match &existing {
+            Some(existing) if !existing.is_file() => path.to_owned(),
+            _ => follow(path).map_err(fail)?,
+        };
         if let Some(existing) = &existing {
             refuse_inputs(&shown, existing, &path, inputs)?;
             if existing.is_dir() {

@@ -38,7 +38,7 @@ pub(super) fn parse(line: &[u8]) -> Line {
         return Line::Comment(None);
     }
     let (boxes_at, boxes) = rest.remove(0);
-    let order = rest.last().and_then(|(_, word)| Order::from_name(std::str::from_utf8(word).ok()?));
+    let order = rest.last().and_then(|(_, word)| Order::from_name_bytes(word));
     if order.is_some() {
         rest.pop();
     }
@@ -47,19 +47,24 @@ pub(super) fn parse(line: &[u8]) -> Line {
         [(at, word)] => match number(word, 0) {
             Ok((length, _)) => Some((*at, length)),
             Err(problem) if looks_like_a_number(word) => return Line::Wrong(*at, problem),
-            Err(_) => {
-                return Line::Comment(Some((
-                    *at,
-                    format!("{} is neither a length nor wxyz or xyzw", quoted(word)),
-                )));
-            }
+            Err(_) => return nearly(*at, word, "neither a length nor wxyz or xyzw"),
         },
-        [_, (at, word), ..] => {
-            return Line::Comment(Some((*at, format!("{} is one word too many", quoted(word)))));
+        [(at, word), ..] if number(word, 0).is_err() && Order::from_name_bytes(word).is_none() => {
+            return nearly(*at, word, "neither a length nor wxyz or xyzw");
         }
+        [_, (at, word)] if order.is_none() => return nearly(*at, word, "neither wxyz nor xyzw"),
+        [_, (at, word), ..] => return nearly(*at, word, "one word too many"),
     };
     checked(line.len(), (boxes_at, boxes), length, order)
 }
+
+/// A comment that would be a header but for one word.
+fn nearly(at: usize, word: &[u8], what_it_is: &str) -> Line {
+    Line::Comment(Some((at, format!("{} is {what_it_is}", quoted(word)))))
+}
+
+/// Lengths of a box that float32, glTF's number for places, can draw.
+const LENGTHS: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
 fn checked(
     end: usize,
@@ -71,15 +76,21 @@ fn checked(
     let boxes = match count {
         Some(n @ 1..=0xffff_ffff) => n as usize,
         _ => {
+            let range =
+                if boxes.starts_with(b"-") || count == Some(0) { "1 or more" } else { "at most 4294967295" };
             let found = quoted(boxes);
             return Line::Wrong(
                 boxes_at,
-                Problem::new(format!("expected a number of boxes, 1 or more, found {found}")),
+                Problem::new(format!("expected a number of boxes, {range}, found {found}")),
             );
         }
     };
     let body = match length {
-        Some((_, length)) if length > 0.0 => Body::Chain { length },
+        Some((_, length)) if LENGTHS.contains(&length) => Body::Chain { length },
+        Some((at, length)) if length > 0.0 => {
+            let range = "a length of a box from 1e-9 to 1e9";
+            return Line::Wrong(at, Problem::new(format!("expected {range}, found {length:e}")));
+        }
         Some((at, length)) => {
             return Line::Wrong(
                 at,
@@ -134,7 +145,13 @@ mod tests {
         for text in ["#", "# made by hand", "# 2026-11-22", "# 4.5 3", "# wxyz 4", "## 4 3"] {
             assert_eq!(parse(text.as_bytes()), Line::Comment(None), "{text}");
         }
-        for (text, at) in [("# 4 boxes", 4), ("# 4 3.0 wxzy", 8), ("# 4 3 2 xyzw", 6), ("# 4 xyzw 3", 9)] {
+        for (text, at) in [
+            ("# 4 boxes", 4),
+            ("# 4 3.0 wxzy", 8),
+            ("# 4 3 2 xyzw", 6),
+            ("# 4 xyzw 3", 9),
+            ("# 2 boxes of length 3", 4),
+        ] {
             match parse(text.as_bytes()) {
                 Line::Comment(Some((place, _))) => assert_eq!(place, at, "{text}"),
                 other => panic!("{text}: {other:?}"),
@@ -153,6 +170,8 @@ mod tests {
         assert_eq!(wrong("# 99999999999999999999999 3.0").0, 2);
         assert_eq!(wrong("# 4 -3").1, "expected a positive length of a box, found -3");
         assert_eq!(wrong("# 4 0.0").0, 4);
+        assert_eq!(wrong("# 4 1e39").1, "expected a length of a box from 1e-9 to 1e9, found 1e39");
+        assert_eq!(wrong("# 4 1e-60").0, 4);
         assert_eq!(wrong("# 4 nan").1, "expected a finite number, found 'nan'");
         assert_eq!(wrong("# 4 3,0").0, 4);
         assert_eq!(wrong("# 4").0, 3);

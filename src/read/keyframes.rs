@@ -112,7 +112,10 @@ impl<'a> Reader<'a> {
 
     /// Removes a UTF-8 byte-order mark; refuses UTF-16.
     fn strip_mark(&self, block: &mut Block) -> Result<(), Refusal> {
-        if block.text.starts_with(&[0xff, 0xfe]) || block.text.starts_with(&[0xfe, 0xff]) {
+        // Without a mark every other byte of ASCII text is zero.
+        let utf16 =
+            matches!(block.text[..], [0xff, 0xfe, ..] | [0xfe, 0xff, ..] | [0, _, 0, ..] | [_, 0, _, 0, ..]);
+        if utf16 {
             let problem = Problem::new("expected UTF-8 text, found UTF-16");
             return Err(self.refuse(1, b"", 0, problem.hint("save the file as UTF-8")));
         }
@@ -212,22 +215,27 @@ impl<'a> Reader<'a> {
         let t = time - self.start;
         let problem = match self.times.last() {
             None => None,
-            Some(_) if !t.is_finite() => Some("expected times less than 1.8e308 s apart, found".to_owned()),
+            Some(_) if !t.is_finite() => Some((
+                format!("expected a time less than 1.8e308 s after the first, in line {}", self.lines.of(0)),
+                "no number can hold the time between them",
+            )),
             Some(&before) if t > before => None,
             Some(&before) => {
                 let earlier = self.start + before;
                 let line = self.lines.of(self.times.len() - 1);
                 Some(if time > earlier {
-                    format!("expected a time that float64 can tell from {earlier} in line {line}, found")
+                    let what = format!("expected a time that float64 can tell from the one in line {line}");
+                    (what, "times are counted from the first: one that is far away blurs all others")
                 } else {
-                    format!("expected a time later than {earlier} in line {line}, found")
+                    let what = format!("expected a time later than {earlier} in line {line}");
+                    (what, "times must increase from row to row")
                 })
             }
         };
-        if let Some(problem) = problem {
+        if let Some((expected, hint)) = problem {
             let text = lines(text).next().map_or(b"".as_slice(), |(_, line)| line);
-            let problem =
-                Problem::new(format!("{problem} {time}")).hint("times must increase from row to row");
+            let found = words(text).next().map_or_else(String::new, |(_, word)| quoted(word));
+            let problem = Problem::new(format!("{expected}, found {found}")).hint(hint);
             return Err(self.refuse(line, text, skip_space(text, 0), problem));
         }
         self.times.push(t);
@@ -299,22 +307,25 @@ impl<'a> Reader<'a> {
             }
         };
         let problem = Problem::new(format!("expected two keys or more, found {found}"));
-        Err(missing(problem.hint("a key is a row: a time and a quaternion (w x y z) for each box")))
+        Err(missing(problem.hint("a key is a row: a time and a quaternion for each box")))
     }
 }
 
 /// The header that no row agrees with.
 fn disagreement(header: Header, rows: usize, count: usize) -> Problem {
+    let box_or_boxes = |n: usize| if n == 1 { "box" } else { "boxes" };
     let problem = Problem::new(format!(
-        "expected a header that fits the rows, found {} boxes where all {rows} rows have {count} numbers",
-        header.boxes
+        "expected a header that fits the rows, found {} {} where all {rows} rows have {count} numbers",
+        header.boxes,
+        box_or_boxes(header.boxes)
     ));
     if count > 1 && (count - 1).is_multiple_of(4) {
         let boxes = (count - 1) / 4;
-        let plural = if boxes == 1 { "box" } else { "boxes" };
+        let plural = box_or_boxes(boxes);
         problem.hint(format!("rows of {count} numbers are {boxes} {plural}: a time and 4 numbers for each"))
     } else {
-        problem.hint("a row is a time and 4 numbers (w x y z) for each box: 5, 9, 13, 17, … numbers")
+        let untimed = if count.is_multiple_of(4) { "; is the time missing?" } else { "" };
+        problem.hint(format!("a row is a time and 4 numbers for each box: 5, 9, 13, 17, … numbers{untimed}"))
     }
 }
 

@@ -39,6 +39,10 @@ impl Order {
         [Order::Wxyz, Order::Xyzw].into_iter().find(|order| order.name() == name)
     }
 
+    fn from_name_bytes(name: &[u8]) -> Option<Order> {
+        Order::from_name(std::str::from_utf8(name).ok()?)
+    }
+
     fn other(self) -> Order {
         match self {
             Order::Wxyz => Order::Xyzw,

@@ -152,8 +152,10 @@ impl Rows {
         // Scaled by a power of two where the squares would overflow or vanish.
         let largest = parts.iter().fold(0.0, |m: f64, p| m.max(p.abs()));
         if largest == 0.0 {
-            return Err(Problem::new("expected a rotation, found a quaternion of zeros")
-                .hint("no rotation is '1 0 0 0' in the order w x y z"));
+            return Err(Problem::new("expected a rotation, found a quaternion of zeros").hint(match order {
+                Order::Wxyz => "no rotation is '1 0 0 0' in the order w x y z",
+                Order::Xyzw => "no rotation is '0 0 0 1' in the order x y z w",
+            }));
         }
         let scale = match largest {
             l if l < 1e-150 => 2f64.powi(700),

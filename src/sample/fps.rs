@@ -19,6 +19,16 @@ impl Fps {
     /// The default: 60 frames per second.
     pub const DEFAULT: Fps = Fps { frames: 60, seconds: 1 };
 
+    /// The largest rate of at most `rate` frames a second that is easily said: a whole
+    /// number, or a whole number of seconds for a frame. None where that would have more
+    /// digits than a rate may have.
+    pub(crate) fn at_most(rate: f64) -> Option<Fps> {
+        let (frames, seconds) = if rate >= 1.0 { (rate.floor(), 1.0) } else { (1.0, (1.0 / rate).ceil()) };
+        let sayable = |x: f64| x.is_finite() && x < 1e12;
+        let frames = frames.min(1e12 - 1.0);
+        sayable(seconds).then_some(Fps { frames: frames as u64, seconds: seconds as u64 })
+    }
+
     /// The time of a frame, seconds; frame 0 is at 0.
     pub fn time(self, frame: u64) -> f64 {
         // Whole products below 2^53 are exact, so only the quotient rounds.
@@ -92,6 +102,25 @@ mod tests {
         {
             assert_eq!(parsed(text), Err(NotARate), "{text}");
         }
+    }
+
+    #[test]
+    fn rates_for_messages_can_be_asked_for() {
+        let said = |rate: f64| Fps::at_most(rate).map(|fps| fps.to_string());
+        let cases = [
+            (512.0, "512"),
+            (59.9, "59"),
+            (1.0, "1"),
+            (0.9, "1/2"),
+            (1.0 / 64.0, "1/64"),
+            (1e300, "999999999999"),
+        ];
+        for (rate, text) in cases {
+            assert_eq!(said(rate).as_deref(), Some(text));
+            assert_eq!(text.parse(), Ok(Fps::at_most(rate).unwrap()));
+        }
+        assert_eq!(said(1e-13), None);
+        assert_eq!(said(0.0), None);
     }
 
     #[test]

@@ -30,7 +30,7 @@ pub enum TooFine {
         /// Time from frame to frame, seconds.
         interval: f64,
         /// The largest rate at which they do not.
-        largest_fps: f64,
+        largest_fps: Fps,
     },
     /// Two keys become the same float32 time: this one and the next.
     #[error("keys {key} and {} are so close that float32, glTF's number for times, cannot tell them apart", .key + 1)]
@@ -39,7 +39,9 @@ pub enum TooFine {
         key: usize,
     },
     /// The clip is longer than float32 can say.
-    #[error("the clip is longer than 3.4e38 s, the largest float32")]
+    #[error(
+        "the clip is longer than 1e18 s, where float32, glTF's number for times, ends to tell frames apart"
+    )]
     TooLong,
 }
 
@@ -152,10 +154,14 @@ impl<'a> Timeline<'a> {
     }
 }
 
+/// The longest clip, seconds: beyond it no frame rate that can be asked for has frames
+/// that float32 tells apart.
+const LONGEST: f64 = 1e18;
+
 /// Whether float32 can tell the samples apart.
 fn check(keys: &[f64], fps: Fps, key_times: bool) -> Result<(), TooFine> {
     let last = keys[keys.len() - 1];
-    if !(last as f32).is_finite() {
+    if last > LONGEST {
         return Err(TooFine::TooLong);
     }
     let close = keys.windows(2).position(|pair| pair[0] as f32 == pair[1] as f32);
@@ -166,15 +172,19 @@ fn check(keys: &[f64], fps: Fps, key_times: bool) -> Result<(), TooFine> {
         return Err(TooFine::Keys { key: 0 });
     }
     let interval = fps.interval();
-    let latest = fps.time(fps.frame_near(last)).min(last) as f32;
-    let resolution = spacing_below(latest);
-    if interval >= resolution || interval > last {
+    // The last frame, but for rates so high that its number does not fit.
+    let latest = match fps.frame_near(last) {
+        u64::MAX => last,
+        frame => fps.time(frame).min(last),
+    };
+    if interval >= spacing_below(latest as f32) || interval > last {
         return Ok(());
     }
     // From 2ᵉ on float32 numbers are 2ᵉ⁻²³ apart: frames fall together from the first
     // power of two where that exceeds their interval.
     let time = 2f64.powi(24 + interval.log2().floor() as i32);
-    Err(TooFine::Frames { time: time.min(last), interval, largest_fps: (1.0 / resolution).floor() })
+    let largest_fps = Fps::at_most(1.0 / spacing_below(last as f32)).expect("LONGEST leaves a rate");
+    Err(TooFine::Frames { time: time.min(last), interval, largest_fps })
 }
 
 /// Distance from a float32 to the one below it.
@@ -235,8 +245,23 @@ mod tests {
         let keys = [0.0, 20_000.0];
         let error = Timeline::new(&keys, None, "1000".parse().unwrap(), false).unwrap_err();
         // From 16384 s on float32 times are 2⁻⁹ s apart, before that 2⁻¹⁰ s.
-        assert_eq!(error, TooFine::Frames { time: 16_384.0, interval: 1e-3, largest_fps: 512.0 });
+        assert_eq!(
+            error,
+            TooFine::Frames { time: 16_384.0, interval: 1e-3, largest_fps: "512".parse().unwrap() }
+        );
         assert!(Timeline::new(&keys, None, "512".parse().unwrap(), false).is_ok());
+        // Every rate that is named works, those below one frame a second too.
+        for last in [1.0, 1e5, 1e9, 1e18] {
+            let keys = [0.0, last];
+            let Err(TooFine::Frames { largest_fps, .. }) =
+                Timeline::new(&keys, None, "999999999999".parse().unwrap(), true)
+            else {
+                panic!("{last}");
+            };
+            assert_eq!(check(&keys, largest_fps, true), Ok(()));
+            let asked_for: Fps = largest_fps.to_string().parse().unwrap();
+            assert_eq!(asked_for, largest_fps);
+        }
         let many = Timeline::new(&[0.0, 1e9], None, "999999999999".parse().unwrap(), false);
         assert!(matches!(many, Err(TooFine::Frames { .. })));
     }

@@ -1,3 +1,25 @@
-//! Whole-flow tests, a file a stage.
+//! Whole-flow tests, a file a subject. Those of the command line run the real program.
 
+mod clips;
 mod reference;
+mod scipy;
+mod support;
+
+#[cfg(feature = "cli")]
+mod check;
+#[cfg(feature = "cli")]
+mod convert;
+#[cfg(feature = "cli")]
+mod convert_motion;
+#[cfg(feature = "cli")]
+mod convert_outputs;
+#[cfg(feature = "cli")]
+mod example;
+#[cfg(feature = "cli")]
+mod help;
+#[cfg(feature = "cli")]
+mod inspect;
+#[cfg(feature = "cli")]
+mod refused;
+#[cfg(all(feature = "cli", feature = "render"))]
+mod thumbnail;

@@ -1,0 +1,63 @@
+//! Help, completions and the manual page come from the same definitions.
+
+use crate::support::tool::{finish, program, run};
+
+const COMMANDS: [&str; 7] = ["convert", "check", "thumbnail", "inspect", "example", "completions", "man"];
+
+/// The long options that a command's help lists.
+fn flags(command: &str) -> Vec<String> {
+    let help = run([command, "--help"]).exits(0).out();
+    let words = help.split(|c: char| !(c.is_ascii_alphanumeric() || c == '-'));
+    let mut flags: Vec<String> =
+        words.filter(|word| word.starts_with("--") && word.len() > 3).map(str::to_owned).collect();
+    flags.sort();
+    flags.dedup();
+    flags
+}
+
+#[test]
+fn help_names_every_command_and_the_exit_codes() {
+    let help = run(["--help"]).exits(0).out();
+    for words in
+        COMMANDS.iter().chain(&["0 done", "1 input refused", "2 usage", "3 output failed", "4 environment"])
+    {
+        assert!(help.contains(words), "{words} not in:\n{help}");
+    }
+    let version = run(["--version"]).exits(0).out();
+    assert_eq!(version, concat!("dat2glb ", env!("CARGO_PKG_VERSION"), "\n"));
+}
+
+#[test]
+fn completions_know_every_command_and_flag() {
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = run(["completions", shell]).exits(0).out();
+        for command in COMMANDS {
+            assert!(script.contains(command), "{shell}: no {command}");
+            for flag in flags(command) {
+                // fish writes them without the hyphens.
+                let flag = if shell == "fish" { flag.trim_start_matches('-') } else { &flag };
+                assert!(script.contains(flag), "{shell}: no {flag} of {command}");
+            }
+        }
+    }
+    run(["completions", "tcsh"]).exits(2).says(&["tcsh", "bash"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn bash_accepts_its_script() {
+    let script = run(["completions", "bash"]).exits(0).stdout;
+    finish(std::process::Command::new("bash").arg("-n"), &script).exits(0);
+}
+
+#[test]
+fn the_manual_page_knows_every_command_and_flag() {
+    let page = finish(program().arg("man"), b"").exits(0).out().replace("\\-", "-");
+    assert!(page.contains(".TH dat2glb 1"), "{page}");
+    for command in COMMANDS {
+        assert!(page.contains(&format!("dat2glb-{command}")), "{command}");
+        for flag in flags(command) {
+            assert!(page.contains(&flag), "{flag} of {command}");
+        }
+    }
+}
