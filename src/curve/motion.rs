@@ -92,9 +92,15 @@ impl<'a> Motion<'a> {
         piece.at(piece.parameter(t))
     }
 
-    /// The piece that holds a time: of two that meet there, the later one.
+    /// The piece that holds a time: of two that meet there, the later one. From the last
+    /// key on the motion rests.
     pub fn piece_at(&self, t: f64) -> Piece {
         let last = self.times.len() - 2;
+        let end = self.times[last + 1];
+        if t >= end {
+            let resting = if self.ends == Ends::Hold { self.keys[last] } else { self.last };
+            return Piece { start: end, end: f64::INFINITY, shape: Shape::Rest(resting) };
+        }
         let segment = self.times.partition_point(|&key| key <= t).saturating_sub(1).min(last);
         self.piece(segment, t)
     }
