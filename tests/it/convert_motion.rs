@@ -271,7 +271,6 @@ fn samples_next_to_keys_give_way() {
 #[test]
 fn many_samples_join_without_a_seam() {
     let folder = tempfile::tempdir().unwrap();
-    // After a half turn the curve itself may go on with the other sign.
     for name in ["body-free", "half-turn"] {
         let clip = read_clip(&keyframes(name));
         let schemes = [Scheme::Slerp, Scheme::Bessel];

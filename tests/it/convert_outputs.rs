@@ -73,6 +73,7 @@ fn an_output_that_is_the_input_is_refused() {
     }
 }
 
+#[cfg(feature = "render")]
 #[test]
 fn a_thumbnail_must_not_replace_its_glb() {
     let folder = folder_with(&["two-keys"]);
