@@ -58,9 +58,9 @@ pub enum Error {
     },
     /// More than a .glb can hold.
     #[error(
-        "{source_name}: the output would have {:.2} GiB, and a .glb ends at 4 GiB; {}choose \
-         fewer schemes, or write a .gltf",
-        *.bytes as f64 / (1u64 << 30) as f64, advice(*.largest_fps, *.key_times)
+        "{source_name}: the output would have {:.2} GiB, and a .glb ends at 4 GiB; {}{}write a .gltf",
+        *.bytes as f64 / (1u64 << 30) as f64, advice(*.largest_fps, *.key_times),
+        if *.several_schemes { "choose fewer schemes, or " } else { "or " }
     )]
     TooLarge {
         /// The input's name.
@@ -71,6 +71,8 @@ pub enum Error {
         largest_fps: Option<Fps>,
         /// Whether it fits with the key times.
         key_times: bool,
+        /// Whether there are schemes to leave out.
+        several_schemes: bool,
     },
 }
 
@@ -220,7 +222,8 @@ impl<'a> Plan<'a> {
         let source_name = self.source_name.to_owned();
         let largest_fps = with_keys.or_else(|| rate(3));
         let key_times = with_keys.is_some() || !self.options.key_times;
-        Err(Error::TooLarge { source_name, bytes, largest_fps, key_times })
+        let several_schemes = self.timelines.len() > 1;
+        Err(Error::TooLarge { source_name, bytes, largest_fps, key_times, several_schemes })
     }
 
     fn binary_length(&self) -> u64 {

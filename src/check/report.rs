@@ -122,7 +122,7 @@ impl Report {
             "warnings": self.count(Severity::Warning),
             "infos": self.count(Severity::Info),
             "findings": self.findings,
-            "left_out": self.left_out().map(|(code, n)| (code.to_string(), n)).collect::<BTreeMap<_, _>>(),
+            "leftOut": self.left_out().map(|(code, n)| (code.to_string(), n)).collect::<BTreeMap<_, _>>(),
         })
     }
 

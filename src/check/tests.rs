@@ -672,7 +672,7 @@ fn reports_count_what_they_leave_out() {
     assert!(report.text("F").ends_with("F: info UNUSED_OBJECT: and 150 more of this kind\n"));
     let json = report.to_json();
     assert_eq!(json["schema"], 1);
-    assert_eq!(json["left_out"]["UNUSED_OBJECT"], 150);
+    assert_eq!(json["leftOut"]["UNUSED_OBJECT"], 150);
     let cycle =
         json!({"code": "NODE_CYCLE", "severity": "error", "pointer": "/nodes/1", "message": "goes round"});
     assert_eq!(json["findings"][100], cycle);

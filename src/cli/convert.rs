@@ -1,7 +1,7 @@
 //! `dat2glb convert`: every input through all stages, one after another.
 
 use super::args::Convert;
-use super::exit::{Exit, Failure, say};
+use super::exit::{Exit, Failure};
 use super::files::{Beside, display_name, is_standard, keyframes};
 use super::output::Output;
 use super::progress::Progress;
@@ -257,27 +257,32 @@ fn thumbnail_path(_: &Convert) -> Option<&PathBuf> {
 }
 
 /// Draws the thumbnail that was asked for, from what was loaded back.
-#[cfg(feature = "render")]
 fn draw(job: &Job, options: &Convert, written: &mut Written) -> Result<Option<Output>, Failure> {
     let Some(path) = &job.thumbnail else { return Ok(None) };
     let output = Output::create(path, std::slice::from_ref(&job.input))?;
-    let picture = super::thumbnail::draw(&mut written.asset, &Default::default(), &job.output)?;
-    if picture.covered < dat2glb::render::LEAST_VISIBLE {
-        return Err(Failure::new(
-            Exit::Failed,
-            format!("{}: NOTHING_VISIBLE in its picture", job.output.display()),
-        ));
-    }
-    if !options.quiet {
-        picture.notes.iter().for_each(|note| say(note));
-    }
-    output.file().write_all(&picture.png()).map_err(|error| writing(job, error))?;
+    let png = picture(&mut written.asset, &job.output, options.quiet)?;
+    output.file().write_all(&png).map_err(|error| writing(job, error))?;
     Ok(Some(output))
 }
 
+#[cfg(feature = "render")]
+fn picture(asset: &mut Asset, name: &Path, quiet: bool) -> Result<Vec<u8>, Failure> {
+    use super::exit::say;
+    use dat2glb::render::LEAST_VISIBLE;
+    let picture = super::thumbnail::draw(asset, &Default::default(), name)?;
+    if picture.covered < LEAST_VISIBLE {
+        let message = format!("{}: NOTHING_VISIBLE in its picture; the output was not kept", name.display());
+        return Err(Failure::new(Exit::Failed, message));
+    }
+    if !quiet {
+        picture.notes.iter().for_each(|note| say(&format!("{}: {note}", name.display())));
+    }
+    Ok(picture.png())
+}
+
 #[cfg(not(feature = "render"))]
-fn draw(_: &Job, _: &Convert, _: &mut Written) -> Result<Option<Output>, Failure> {
-    Ok(None)
+fn picture(_: &mut Asset, name: &Path, _quiet: bool) -> Result<Vec<u8>, Failure> {
+    Err(Failure::usage(format!("{}: this build has no renderer", name.display())))
 }
 
 /// `clip.0123456789abcdef.bin` for `clip.gltf`.

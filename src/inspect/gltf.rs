@@ -14,6 +14,7 @@ use crate::asset::{Asset, Container, Layout};
 
 /// What a glTF file holds.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
 pub struct GltfSummary {
     /// `glb` or `gltf`.
     pub kind: &'static str,
@@ -33,6 +34,7 @@ pub struct GltfSummary {
 
 /// A node in the tree.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "camelCase")]
 pub struct TreeNode {
     /// Its index in the file.
     pub node: usize,
@@ -50,6 +52,7 @@ pub struct TreeNode {
 
 /// A clip.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
 pub struct ClipSummary {
     /// Its name.
     pub name: Option<String>,
@@ -67,6 +70,7 @@ pub struct ClipSummary {
 
 /// Bytes by part. Data that several objects share counts once for each part.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "camelCase")]
 pub struct Parts {
     /// All files together.
     pub total: u64,

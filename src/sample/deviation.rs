@@ -48,8 +48,12 @@ pub(super) fn upper_bound(stretch: &Stretch) -> f64 {
     while i + 1 < stretch.times.len() {
         i = search.run_from(i);
     }
-    2.0 * search.bound.max(search.found)
+    2.0 * (search.bound.max(search.found) + search.uneven_lengths())
 }
+
+/// How much the lengths of two quaternions of four float32 numbers can differ: each
+/// number is within 2⁻²⁵ of what makes its length 1.
+const LENGTHS: f64 = 1.2e-7;
 
 struct Search<'a> {
     stretch: &'a Stretch<'a>,
@@ -79,6 +83,14 @@ impl<'a> Search<'a> {
             playback.iter().zip(stretch.exact).map(|(p, q)| 0.5 * p.angle_to(*q)).collect();
         let found = at_samples.iter().copied().fold(0.0, f64::max);
         Search { stretch, playback, at_samples, found, bound: 0.0 }
+    }
+
+    /// What players may differ by in blending samples whose lengths are not quite one: the
+    /// longer of two pulls the blend towards it, by at most the difference of their
+    /// lengths times a quarter of the way between them.
+    fn uneven_lengths(&self) -> f64 {
+        let step = |pair: &[Quat]| 0.5 * pair[0].angle_to(pair[1]);
+        0.25 * LENGTHS * self.playback.windows(2).map(step).fold(0.0, f64::max)
     }
 
     fn time(&self, i: usize) -> f64 {

@@ -139,3 +139,29 @@ fn steps(motion: &Motion, times: &[f32], rotations: &[[f32; 4]]) -> Steps {
     }
     steps
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::curve::{Ends, Scheme};
+    use crate::math::Vec3;
+
+    #[test]
+    fn signs_are_continuous_across_chunks() {
+        // 400° between samples: quaternions turn by 200° and change hemisphere each time.
+        let times: Vec<f64> = (0..20_000).map(f64::from).collect();
+        let turn = |i: usize| Quat::exp(Vec3::new(0.0, 0.0, (50.0 * i as f64).to_radians()));
+        let keys: Vec<Quat> = (0..times.len()).map(turn).collect();
+        let motion = Motion::new(&times, &keys, Scheme::Slerp, Ends::Natural);
+        let timeline = Timeline::new(&times, None, "1/4".parse().unwrap(), false).unwrap();
+        assert!(timeline.chunks() > 1);
+        let mut samples = Vec::new();
+        let sink = |chunk: &[[f32; 4]]| {
+            samples.extend_from_slice(chunk);
+            Ok::<(), ()>(())
+        };
+        rotations(&[motion], &timeline, sink).unwrap();
+        let dots = samples.windows(2).map(|q| (0..4).map(|i| q[0][i] * q[1][i]).sum::<f32>());
+        assert!(dots.fold(1.0, f32::min) > 0.0);
+    }
+}

@@ -64,7 +64,7 @@ fn the_manual_page_knows_every_command_and_flag() {
     let page = finish(program().arg("man"), b"").exits(0).out().replace("\\-", "-");
     assert!(page.contains(".TH dat2glb 1"), "{page}");
     for &command in COMMANDS {
-        assert!(page.contains(&format!("dat2glb-{command}")), "{command}");
+        assert!(page.contains(&format!("\ndat2glb {command}\n")), "{command}");
         for flag in flags(command) {
             assert!(page.contains(&flag), "{flag} of {command}");
         }
