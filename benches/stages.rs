@@ -5,7 +5,7 @@ use dat2glb::convert::{Options, Plan};
 use dat2glb::curve::{Arc, Ends, Motion, Scheme};
 use dat2glb::math::{Quat, Vec3};
 use dat2glb::read::{self, Keyframes};
-use dat2glb::sample::{Fps, Timeline, rotations};
+use dat2glb::sample::{Fps, Rotation, Timeline, rotations};
 use divan::counter::{BytesCount, ItemsCount};
 use divan::{Bencher, black_box};
 use std::fmt::Write;
@@ -70,8 +70,8 @@ fn sample(bencher: Bencher, scheme: &str) {
     let clip = keyframes(4, 10_000).clip;
     let scheme = Scheme::from_name(scheme).unwrap();
     let timeline = Timeline::new(&clip.times, None, Fps::DEFAULT, true).unwrap();
-    let motions: Vec<Motion> =
-        clip.tracks.iter().map(|track| Motion::new(&clip.times, track, scheme, Ends::Natural)).collect();
+    let motion = |track| Rotation::Motion(Motion::new(&clip.times, track, scheme, Ends::Natural));
+    let motions: Vec<Rotation> = clip.tracks.iter().map(|track| motion(track)).collect();
     bencher.counter(ItemsCount::new(4 * timeline.len())).bench(|| {
         rotations(&motions, &timeline, |chunk| {
             black_box(chunk.to_vec());

@@ -6,7 +6,7 @@
 use crate::clip::{Clip, Warning};
 use crate::curve::{self, Ends, Motion, NotClosed, Scheme};
 use crate::read::Keyframes;
-use crate::sample::{self, Fps, Steps, Timeline, TooFine, TrackFacts};
+use crate::sample::{self, Fps, Rotation, Steps, Timeline, TooFine, TrackFacts};
 use crate::write::{
     Animation, Bin, Buffer, Channel, Data, Glb, LARGEST_GLB, Property, Scene, document, glb_size,
 };
@@ -93,7 +93,7 @@ struct Recipe<'a> {
     quat_order: &'a str,
     inputs: [Input<'a>; 1],
     /// Upper bounds of the angle between playback (slerp) and the curve, by box.
-    deviation_degrees: Vec<f64>,
+    deviation_degrees: Vec<Option<f64>>,
 }
 
 #[derive(Serialize)]
@@ -113,8 +113,8 @@ pub struct ClipFacts {
     /// Samples of each box.
     pub samples: u64,
     /// An upper bound of the angle between playback (slerp) and the curve, degrees: the
-    /// largest of all boxes.
-    pub deviation_degrees: f64,
+    /// largest of all boxes. None where one of them has none.
+    pub deviation_degrees: Option<f64>,
     /// The largest turn from sample to sample, degrees.
     pub largest_step_degrees: f64,
     /// The same by track.
@@ -235,7 +235,7 @@ impl<'a> Plan<'a> {
     /// most digits.
     fn widest_json(&self) -> usize {
         // Numbers of the most digits a float64 and a float32 can take.
-        let widest = TrackFacts { deviation: -f64::MIN_POSITIVE, ..TrackFacts::default() };
+        let widest = TrackFacts { deviation: Some(-f64::MIN_POSITIVE), ..TrackFacts::default() };
         let last = -f32::MIN_POSITIVE;
         let facts = vec![widest; self.keyframes.clip.tracks.len()];
         let animation = |&scheme: &Scheme| {
@@ -261,17 +261,17 @@ impl<'a> Plan<'a> {
         let (mut animations, mut facts) = (Vec::new(), Vec::new());
         for (&scheme, timeline) in self.options.schemes.iter().zip(&self.timelines) {
             let clip = &self.keyframes.clip;
-            let motions: Vec<Motion> =
-                (0..clip.tracks.len()).map(|track| motion(clip, track, scheme, self.options.ends)).collect();
+            let motions = (0..clip.tracks.len()).map(|track| motion(clip, track, scheme, self.options.ends));
+            let rotations: Vec<Rotation> = motions.map(Rotation::Motion).collect();
             // Timelines differ by their ramps only.
-            let ramp = motions[0].ramp();
+            let ramp = motion(clip, 0, scheme, self.options.ends).ramp();
             let times = match shared.iter().find(|known| known.0 == ramp) {
                 Some(&(_, times)) => times,
                 None => append_times(buffer, timeline)?,
             };
             shared.push((ramp, times));
             let first = buffer.length();
-            let known = sample::rotations(&motions, timeline, |rotations| {
+            let known = sample::rotations(&rotations, timeline, |rotations| {
                 progress(rotations.len() as u64);
                 buffer.append(bytemuck::cast_slice(&little_endian(rotations)))
             })?;
@@ -306,19 +306,20 @@ impl<'a> Plan<'a> {
             key_times: self.options.key_times,
             quat_order: self.keyframes.order.name(),
             inputs: [Input { name: &self.options.input, blake3: &self.keyframes.hash }],
-            deviation_degrees: facts.iter().map(|f| rounded_up(f.deviation)).collect(),
+            deviation_degrees: facts.iter().map(|f| f.deviation.map(rounded_up)).collect(),
         };
         serde_json::to_string(&recipe).expect("plain data becomes JSON")
     }
 
     fn facts(&self, scheme: Scheme, samples: u64, tracks: Vec<TrackFacts>) -> ClipFacts {
-        let largest = |of: fn(&TrackFacts) -> f64| tracks.iter().map(of).fold(0.0, f64::max);
+        let deviations: Option<Vec<f64>> = tracks.iter().map(|track| track.deviation).collect();
+        let largest = |values: Vec<f64>| values.into_iter().fold(0.0, f64::max);
         ClipFacts {
             name: self.name(scheme),
             scheme: scheme.name(),
             samples,
-            deviation_degrees: rounded_up(largest(|f| f.deviation)),
-            largest_step_degrees: largest(|f| f.steps.worst),
+            deviation_degrees: deviations.map(|all| rounded_up(largest(all))),
+            largest_step_degrees: largest(tracks.iter().map(|track| track.steps.worst).collect()),
             tracks,
         }
     }

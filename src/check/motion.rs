@@ -86,7 +86,7 @@ struct Recipe {
     #[serde(default)]
     inputs: Vec<Input>,
     #[serde(default)]
-    deviation_degrees: Vec<f64>,
+    deviation_degrees: Vec<Option<f64>>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -123,7 +123,9 @@ pub fn compare(
             note_changed_input(&clip, recipe, keyframes, report);
         }
         let stored = recipe.map(|recipe| recipe.deviation_degrees).unwrap_or_default();
-        let limit = |track: usize| given.max_error.or(stored.get(track).map(|bound| bound + MARGIN));
+        let limit = |track: usize| {
+            given.max_error.or(stored.get(track).copied().flatten().map(|bound| bound + MARGIN))
+        };
         let mut boxes = Vec::new();
         for track in 0..keyframes.clip.tracks.len() {
             let motion = Motion::new(&keyframes.clip.times, &keyframes.clip.tracks[track], scheme, ends);

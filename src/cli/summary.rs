@@ -84,9 +84,12 @@ impl<'a> Summary<'a> {
             [clip] => format!("{} samples each", clip.samples),
             clips => format!("{} clips, {} samples in all", clips.len(), self.samples),
         };
-        let deviation = self.clips.iter().map(|clip| clip.deviation_degrees).fold(0.0, f64::max);
+        let deviations: Option<Vec<f64>> = self.clips.iter().map(|clip| clip.deviation_degrees).collect();
+        let deviation = deviations.map_or(String::new(), |all| {
+            format!(", within {}° of the curve", all.into_iter().fold(0.0, f64::max))
+        });
         format!(
-            "{}: {}, {}, {} s, {clips}, {}, within {deviation}° of the curve, {:.3} s\n\
+            "{}: {}, {}, {} s, {clips}, {}{deviation}, {:.3} s\n\
              Blender: set the scene's end to frame {} at {BLENDER_FPS} fps",
             self.output,
             count(self.keys, "key", "keys"),

@@ -8,7 +8,9 @@ mod deviation;
 mod fps;
 mod rotations;
 mod timeline;
+mod translations;
 
 pub use fps::{Fps, NotARate};
-pub use rotations::{Steps, TrackFacts, rotations};
+pub use rotations::{Rotation, Steps, TrackFacts, rotations};
 pub use timeline::{Timeline, TooFine};
+pub use translations::{Travel, translations};

@@ -28,12 +28,21 @@ impl Steps {
     }
 }
 
+/// A rotation as a function of time.
+#[derive(Clone, Copy)]
+pub enum Rotation<'a> {
+    /// The motion through a track's keys.
+    Motion(Motion<'a>),
+    /// Any function of seconds; nothing is known of it between samples.
+    Function(&'a (dyn Fn(f64) -> Quat + Sync)),
+}
+
 /// What is known of a track once it is sampled.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TrackFacts {
     /// An upper bound of the angle between the motion and the playback of its written
-    /// samples by slerp, degrees.
-    pub deviation: f64,
+    /// samples by slerp, degrees; none for a function that nothing is known of.
+    pub deviation: Option<f64>,
     /// Steps from sample to sample; the ramp of a jump does not count.
     pub steps: Steps,
 }
@@ -52,43 +61,70 @@ struct Chunk {
 /// Each rotation is evaluated at the float32 time that is written. Signs are continuous
 /// from sample to sample. Memory: a few chunks. Returns what is known of each track.
 pub fn rotations<E>(
-    motions: &[Motion],
+    tracks: &[Rotation],
     timeline: &Timeline,
     mut sink: impl FnMut(&[[f32; 4]]) -> Result<(), E>,
 ) -> Result<Vec<TrackFacts>, E> {
-    let chunks = timeline.chunks();
-    let jobs: Vec<(usize, usize)> =
-        (0..motions.len()).flat_map(|track| (0..chunks).map(move |chunk| (track, chunk))).collect();
-    let mut facts = vec![TrackFacts::default(); motions.len()];
+    let mut facts = vec![TrackFacts::default(); tracks.len()];
     let mut turned = false;
-    for batch in jobs.chunks(8 * rayon::current_num_threads()) {
-        let sampled: Vec<Chunk> =
-            batch.par_iter().map(|&(track, chunk)| sample(&motions[track], timeline, chunk)).collect();
-        for (&(track, chunk), mut samples) in batch.iter().zip(sampled) {
-            turned &= chunk > 0;
-            if turned {
-                samples.rotations.iter_mut().for_each(negate);
-            }
-            turned ^= samples.turned;
-            sink(&samples.rotations)?;
-            let known = &mut facts[track];
-            known.deviation = known.deviation.max(samples.facts.deviation);
-            known.steps = known.steps.and(samples.facts.steps);
+    let job = |track: usize, chunk| sample(&tracks[track], timeline, chunk);
+    in_order(tracks.len(), timeline.chunks(), job, |track, chunk, mut samples: Chunk| {
+        turned &= chunk > 0;
+        if turned {
+            samples.rotations.iter_mut().for_each(negate);
         }
-    }
+        turned ^= samples.turned;
+        let known = &mut facts[track];
+        // f64::max would hide a chunk of which nothing is known.
+        known.deviation = match (chunk, known.deviation, samples.facts.deviation) {
+            (0, _, first) => first,
+            (_, Some(a), Some(b)) => Some(a.max(b)),
+            _ => None,
+        };
+        known.steps = known.steps.and(samples.facts.steps);
+        sink(&samples.rotations)
+    })?;
     Ok(facts)
 }
 
-fn sample(motion: &Motion, timeline: &Timeline, chunk: usize) -> Chunk {
+/// Runs a job for every track and chunk, in parallel, and hands the results on in order:
+/// the first track's chunks, then the next one's. Only some results wait at a time.
+pub(super) fn in_order<T: Send, E>(
+    tracks: usize,
+    chunks: usize,
+    job: impl Fn(usize, usize) -> T + Sync,
+    mut sink: impl FnMut(usize, usize, T) -> Result<(), E>,
+) -> Result<(), E> {
+    let jobs: Vec<(usize, usize)> =
+        (0..tracks).flat_map(|track| (0..chunks).map(move |chunk| (track, chunk))).collect();
+    for batch in jobs.chunks(8 * rayon::current_num_threads()) {
+        let done: Vec<T> = batch.par_iter().map(|&(track, chunk)| job(track, chunk)).collect();
+        for (&(track, chunk), result) in batch.iter().zip(done) {
+            sink(track, chunk, result)?;
+        }
+    }
+    Ok(())
+}
+
+fn sample(rotation: &Rotation, timeline: &Timeline, chunk: usize) -> Chunk {
     let (before, times) = timeline.chunk(chunk);
     let times: Vec<f32> = before.into_iter().chain(times).collect();
-    let exact = evaluate(motion, &times);
+    let exact = match rotation {
+        Rotation::Motion(motion) => evaluate(motion, &times),
+        Rotation::Function(at) => times.iter().map(|&t| at(f64::from(t))).collect(),
+    };
     let mut rotations: Vec<[f32; 4]> = exact.iter().map(|q| q.to_xyzw().map(|x| x as f32)).collect();
     let turned = align(&mut rotations);
-    let stretch = Stretch { motion, times: &times, exact: &exact, written: &rotations };
-    let facts = TrackFacts {
-        deviation: deviation::upper_bound(&stretch).to_degrees(),
-        steps: steps(motion, &times, &rotations),
+    let bound = |motion| {
+        let stretch = Stretch { motion, times: &times, exact: &exact, written: &rotations };
+        deviation::upper_bound(&stretch).to_degrees()
+    };
+    let facts = match rotation {
+        Rotation::Motion(motion) => {
+            let ramp = motion.ramp().map(|start| (start, motion.times()[1]));
+            TrackFacts { deviation: Some(bound(motion)), steps: steps(ramp, &times, &rotations) }
+        }
+        Rotation::Function(_) => TrackFacts { deviation: None, steps: steps(None, &times, &rotations) },
     };
     rotations.drain(..usize::from(before.is_some()));
     Chunk { rotations, turned, facts }
@@ -126,8 +162,8 @@ fn negate(q: &mut [f32; 4]) {
     *q = q.map(|x| -x);
 }
 
-fn steps(motion: &Motion, times: &[f32], rotations: &[[f32; 4]]) -> Steps {
-    let ramp = motion.ramp().map(|start| (start, motion.times()[1]));
+/// The steps between neighbouring samples but for those within the ramp of a jump.
+fn steps(ramp: Option<(f64, f64)>, times: &[f32], rotations: &[[f32; 4]]) -> Steps {
     let mut steps = Steps::default();
     for (t, q) in times.windows(2).zip(rotations.windows(2)) {
         let (start, end) = (f64::from(t[0]), f64::from(t[1]));
@@ -160,7 +196,7 @@ mod tests {
             samples.extend_from_slice(chunk);
             Ok::<(), ()>(())
         };
-        rotations(&[motion], &timeline, sink).unwrap();
+        rotations(&[Rotation::Motion(motion)], &timeline, sink).unwrap();
         let dots = samples.windows(2).map(|q| (0..4).map(|i| q[0][i] * q[1][i]).sum::<f32>());
         assert!(dots.fold(1.0, f32::min) > 0.0);
     }

@@ -90,7 +90,7 @@ proptest! {
         for (found, facts) in compared[0].boxes.iter().zip(&facts[0].tracks) {
             let largest = found.difference.largest();
             // But for the last digits of float64.
-            prop_assert!(largest.degrees <= facts.deviation + 1e-12, "{found:?} {facts:?}");
+            prop_assert!(largest.degrees <= facts.deviation.unwrap() + 1e-12, "{found:?} {facts:?}");
             prop_assert!(found.difference.samples.degrees < 3e-5, "{found:?}");
         }
     }
