@@ -1,0 +1,342 @@
+//! A path: its curve with its timing.
+
+use super::bezier::Bezier;
+use super::knots::{self, SHORTEST, Spacing};
+use super::piece::Piece;
+use super::pieces::{self, Part};
+use super::segments::{self, Segments};
+use super::{Course, Ease, Error, Kind, Options, PathEnds};
+use glam::DVec3;
+
+/// Coordinates up to here leave room for their squares and for rates.
+const LARGEST: f64 = 1e150;
+
+/// The longest duration, seconds.
+const LONGEST: f64 = 1e12;
+
+/// Directions (unit vectors) and velocities (relative) that differ by less do not jump.
+const JUMP: f64 = 1e-6;
+
+/// A position as a function of time.
+///
+/// Times outside 0..=duration are clamped. Where velocity or acceleration jumps, its
+/// value is the later one; the methods that end in `_before` give the earlier one.
+#[derive(Clone, Debug)]
+pub struct Path {
+    control_points: Vec<DVec3>,
+    key_points: Vec<DVec3>,
+    key_times: Vec<f64>,
+    pub(super) duration: f64,
+    closed: bool,
+    /// Everything in `pieces` is in this unit, a power of two, and about 1 at most.
+    pub(super) unit: f64,
+    /// Length in that unit.
+    pub(super) length: f64,
+    /// Constant speed, shaped by the easing; else segments take the time between keys.
+    pub(super) steady: Option<Ease>,
+    /// In order, the first from 0 on; never empty.
+    pub(super) pieces: Vec<Piece>,
+    corners: Vec<f64>,
+    jumps: Vec<f64>,
+}
+
+/// Position and its derivatives by time, in the path's unit.
+struct State {
+    position: DVec3,
+    velocity: DVec3,
+    acceleration: DVec3,
+}
+
+impl Path {
+    /// The path of a kind through or along `points`.
+    ///
+    /// `times`, if there are any, are seconds, one for each key point: each point, or
+    /// each end of a Bézier segment. They may start at any time.
+    pub fn new(
+        kind: Kind,
+        points: &[DVec3],
+        times: Option<&[f64]>,
+        options: &Options,
+    ) -> Result<Path, Error> {
+        segments::check_count(kind, points.len())?;
+        let unit = unit(points)?;
+        if let Some(times) = times {
+            knots::check_times(times, segments::key_indices(kind, points.len()).len())?;
+        }
+        let plan = knots::plan(kind, times.is_some(), options)?;
+        let scaled: Vec<DVec3> = points.iter().map(|p| *p / unit).collect();
+        let segments = segments::segments(kind, &scaled, times, plan.spacing, options.ends)?;
+        let parts = pieces::parts(&segments);
+        let length = parts.last().map_or(0.0, Part::behind);
+        let keyed_times = times.filter(|_| plan.spacing == Spacing::Times && !plan.constant_speed);
+        let seconds = duration(options, times, keyed_times.is_some(), length * unit, segments.steps.len())?;
+        let mut path = Path {
+            control_points: points.to_vec(),
+            key_points: segments.keys.iter().map(|p| *p * unit).collect(),
+            key_times: Vec::new(),
+            duration: seconds,
+            closed: options.ends == PathEnds::Closed,
+            unit,
+            length,
+            steady: (plan.constant_speed && length > 0.0).then_some(options.ease),
+            pieces: Vec::new(),
+            corners: Vec::new(),
+            jumps: Vec::new(),
+        };
+        path.run(parts, &segments, keyed_times);
+        Ok(path)
+    }
+
+    /// Gives the parts their times, and finds what jumps.
+    fn run(&mut self, parts: Vec<Part>, segments: &Segments, times: Option<&[f64]>) {
+        if let Some(ease) = self.steady {
+            let (length, duration) = (self.length, self.duration);
+            let time_at = |s: f64| duration * ease.inverse((s / length).min(1.0));
+            self.key_times = pieces::steady_key_times(&parts, segments.keys.len(), time_at);
+            self.pieces = pieces::steady(parts, time_at);
+        } else {
+            self.key_times = pieces::key_times(&segments.steps, times, self.duration);
+            self.pieces = pieces::keyed(parts, &self.key_times, &segments.steps, self.duration);
+        }
+        self.corners = self.meetings(|before, after| {
+            let (a, b) = (before.last_direction().or(before.held), after.first_direction());
+            matches!((a, b), (Some(a), Some(b)) if a.distance(b) > JUMP)
+        });
+        self.jumps = self.meetings(|before, after| {
+            let (a, b) = (self.state(before, f64::INFINITY).velocity, self.state(after, 0.0).velocity);
+            a.distance(b) > JUMP * a.length().max(b.length())
+        });
+    }
+
+    /// Times at which two pieces meet in a certain way.
+    fn meetings(&self, so: impl Fn(&Piece, &Piece) -> bool) -> Vec<f64> {
+        let meeting = self.pieces.windows(2).filter(|two| so(&two[0], &two[1]));
+        let mut times: Vec<f64> = meeting.map(|two| two[1].start).collect();
+        times.dedup();
+        times
+    }
+
+    /// How long the path takes, seconds.
+    pub fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    /// How long the curve is, to a relative 1e-9 at least.
+    pub fn length(&self) -> f64 {
+        self.length * self.unit
+    }
+
+    /// When the path passes its key points, seconds from 0. Points that coincide under a
+    /// timing by chords, or under constant speed, are passed at the same time.
+    pub fn key_times(&self) -> &[f64] {
+        &self.key_times
+    }
+
+    /// The points that the path passes at its key times: all points, or the ends of
+    /// Bézier segments; where a closing segment was added, the first again.
+    pub fn key_points(&self) -> &[DVec3] {
+        &self.key_points
+    }
+
+    /// The points as they were given.
+    pub fn control_points(&self) -> &[DVec3] {
+        &self.control_points
+    }
+
+    /// Whether the end runs into the start.
+    pub fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// Position at t.
+    pub fn position(&self, t: f64) -> DVec3 {
+        self.state(self.piece_at(t), t).position * self.unit
+    }
+
+    /// Velocity at t, units a second.
+    pub fn velocity(&self, t: f64) -> DVec3 {
+        self.state(self.piece_at(t), t).velocity * self.unit
+    }
+
+    /// Velocity just before t.
+    pub fn velocity_before(&self, t: f64) -> DVec3 {
+        self.state(self.piece_before(t), t).velocity * self.unit
+    }
+
+    /// Acceleration at t, units a second squared. At the tip of a cusp that is run
+    /// through at constant speed there is none, and only its part along the path counts.
+    pub fn acceleration(&self, t: f64) -> DVec3 {
+        self.state(self.piece_at(t), t).acceleration * self.unit
+    }
+
+    /// Acceleration just before t.
+    pub fn acceleration_before(&self, t: f64) -> DVec3 {
+        self.state(self.piece_before(t), t).acceleration * self.unit
+    }
+
+    /// Unit direction of travel at t: where the speed is zero its limit from inside;
+    /// during a rest the last one before, or if there is none the first one after.
+    pub fn direction(&self, t: f64) -> Option<DVec3> {
+        let piece = self.piece_at(t);
+        piece.direction(self.parameter(piece, t))
+    }
+
+    /// Unit direction of travel just before t.
+    pub fn direction_before(&self, t: f64) -> Option<DVec3> {
+        let piece = self.piece_before(t);
+        piece.direction(self.parameter(piece, t))
+    }
+
+    /// Times inside at which the direction jumps, increasing. The seam of a closed path
+    /// is not among them.
+    pub fn corners(&self) -> &[f64] {
+        &self.corners
+    }
+
+    /// Times inside at which the velocity jumps, increasing: corners that are not passed
+    /// at rest, and keys where the speed alone changes.
+    pub fn jumps(&self) -> &[f64] {
+        &self.jumps
+    }
+
+    /// The piece that holds t: of two that meet there, the later one.
+    fn piece_at(&self, t: f64) -> &Piece {
+        let after = self.pieces.partition_point(|piece| piece.start <= t);
+        &self.pieces[after.saturating_sub(1)]
+    }
+
+    /// The piece that holds t: of two that meet there, the earlier one.
+    fn piece_before(&self, t: f64) -> &Piece {
+        let after = self.pieces.partition_point(|piece| piece.start < t);
+        &self.pieces[after.saturating_sub(1)]
+    }
+
+    /// The place of t in a piece's curve, 0..=1.
+    pub(super) fn parameter(&self, piece: &Piece, t: f64) -> f64 {
+        match (self.steady, &piece.arc) {
+            (Some(ease), Some(arc)) => {
+                let way = self.length * ease.at(self.fraction(piece, t))[0];
+                // At the piece's own ends exactly there, whatever rounding says.
+                if t <= piece.start {
+                    0.0
+                } else if t >= piece.start + piece.duration {
+                    1.0
+                } else {
+                    arc.parameter(&piece.curve, way - piece.before)
+                }
+            }
+            _ => ((t - piece.start) / piece.duration).clamp(0.0, 1.0),
+        }
+    }
+
+    /// The fraction of the path's time at t, within the piece.
+    fn fraction(&self, piece: &Piece, t: f64) -> f64 {
+        (t.clamp(piece.start, piece.start + piece.duration) / self.duration).clamp(0.0, 1.0)
+    }
+
+    fn state(&self, piece: &Piece, t: f64) -> State {
+        let u = self.parameter(piece, t);
+        let (position, [first, second]) = (piece.curve.at(u), piece.curve.derivatives(u));
+        let Some(ease) = self.steady else {
+            let rate = 1.0 / piece.duration;
+            return State { position, velocity: first * rate, acceleration: second * (rate * rate) };
+        };
+        let [_, speed, change] = ease.at(self.fraction(piece, t));
+        let (speed, change) =
+            (speed * self.length / self.duration, change * self.length / (self.duration * self.duration));
+        let tangent = piece.direction(u).unwrap_or(DVec3::ZERO);
+        let turning = curvature(tangent, first, second);
+        State {
+            position,
+            velocity: tangent * speed,
+            acceleration: tangent * change + turning * (speed * speed),
+        }
+    }
+
+    /// The curves of the pieces that overlap t0..t1, with the parts of them that do and how much of
+    /// the piece's parameter these are.
+    pub(super) fn overlapping(&self, t0: f64, t1: f64) -> impl Iterator<Item = (&Piece, Bezier, f64)> {
+        let first = self.pieces.partition_point(|piece| piece.start <= t0).saturating_sub(1);
+        let pieces = self.pieces[first..].iter().take_while(move |piece| piece.start < t1 || t1 <= 0.0);
+        pieces.map(move |piece| {
+            // An inversion of the length may err in its last digits.
+            let slack = 1e-12;
+            let from = (self.parameter(piece, t0) - slack).clamp(0.0, 1.0 - slack);
+            let to = (self.parameter(piece, t1) + slack).clamp(from + slack, 1.0);
+            (piece, piece.curve.part(from, to), to - from)
+        })
+    }
+}
+
+/// The derivative of the unit tangent by arc length, (B″ − (B″·T)T)/|B′|².
+fn curvature(tangent: DVec3, first: DVec3, second: DVec3) -> DVec3 {
+    let across = second - tangent * second.dot(tangent);
+    let curvature = across / first.length_squared();
+    // On a straight line only rounding is left, which must not be divided by little.
+    if across.length() > 1e-14 * second.length() && curvature.is_finite() { curvature } else { DVec3::ZERO }
+}
+
+/// The power of two next below the largest coordinate.
+fn unit(points: &[DVec3]) -> Result<f64, Error> {
+    let usable = |p: &DVec3| p.is_finite() && p.abs().max_element() <= LARGEST;
+    if let Some(point) = points.iter().position(|p| !usable(p)) {
+        return Err(Error::Coordinate { point });
+    }
+    let largest = points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    let exponent = if largest > 0.0 { largest.log2().floor().clamp(-1000.0, 1000.0) } else { 0.0 };
+    Ok(2f64.powi(exponent as i32))
+}
+
+/// How long the path takes: as long as its times, as its speed says, as was asked, or a
+/// second a segment.
+fn duration(
+    options: &Options,
+    times: Option<&[f64]>,
+    times_rule: bool,
+    length: f64,
+    segments: usize,
+) -> Result<f64, Error> {
+    if options.speed.is_some() && options.duration.is_some() {
+        return Err(Error::TwoDurations("a speed"));
+    }
+    if times.is_some() && options.duration.is_some() {
+        return Err(Error::TwoDurations("times for the points"));
+    }
+    if options.speed.is_some() && times_rule {
+        return Err(Error::TwoDurations("a speed with times for the points"));
+    }
+    let own = times.map_or(segments as f64, |t| t[t.len() - 1] - t[0]);
+    let seconds = match (options.speed, options.duration) {
+        (Some(speed), _) if !(speed > 0.0 && speed.is_finite()) => return Err(Error::Speed(speed)),
+        (Some(speed), _) if length > 0.0 => length / speed,
+        (_, duration) => duration.unwrap_or(own),
+    };
+    if (SHORTEST..=LONGEST).contains(&seconds) { Ok(seconds) } else { Err(Error::Duration(seconds)) }
+}
+
+impl Course for Path {
+    fn duration(&self) -> f64 {
+        self.duration()
+    }
+    fn key_times(&self) -> &[f64] {
+        self.key_times()
+    }
+    fn is_closed(&self) -> bool {
+        self.is_closed()
+    }
+    fn position(&self, t: f64) -> DVec3 {
+        self.position(t)
+    }
+    fn velocity(&self, t: f64) -> DVec3 {
+        self.velocity(t)
+    }
+    fn acceleration(&self, t: f64) -> DVec3 {
+        self.acceleration(t)
+    }
+    fn direction(&self, t: f64) -> Option<DVec3> {
+        self.direction(t)
+    }
+    fn corners(&self) -> &[f64] {
+        self.corners()
+    }
+}
