@@ -199,9 +199,14 @@ impl Header {
 /// The known name that was probably meant: a slip or two away, more only in long names.
 fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let name: Vec<char> = name.chars().take(40).flat_map(char::to_lowercase).collect();
-    let slips = |known: &&str| slips(&name, &known.chars().collect::<Vec<_>>());
-    let near = known.into_iter().min_by_key(slips)?;
-    (slips(&near) <= (near.len() / 4).max(1)).then_some(near)
+    let near = known.into_iter().filter_map(|known| {
+        let few = (known.len() / 4).max(1);
+        // More letters over or missing than slips are allowed: no need to count.
+        let alike = known.len().abs_diff(name.len()) <= few;
+        let slips = alike.then(|| slips(&name, &known.chars().collect::<Vec<_>>()))?;
+        (slips <= few).then_some((slips, known))
+    });
+    near.min_by_key(|(slips, _)| *slips).map(|(_, known)| known)
 }
 
 /// How many letters are missing, over, wrong, or swapped with their neighbour.

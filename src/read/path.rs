@@ -9,7 +9,7 @@ use crate::math::Quat;
 use std::io::Read;
 
 /// What a path file holds, as it stands there: in the file's frame, not yet a curve.
-#[derive(Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PathFile {
     /// What the points are.
     pub kind: PathKind,

@@ -9,7 +9,7 @@ use crate::math::Quat;
 use std::io::Read;
 
 /// What a file of rotations holds, as it stands there: in the file's frame.
-#[derive(Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RotationsFile {
     /// The rotations, and what they are.
     pub rotations: Rotations,
