@@ -78,6 +78,14 @@ pub(super) fn lines(text: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
     })
 }
 
+/// The last line of a block without white space at its end, and its number.
+pub(super) fn last_line(text: &[u8], first_line: usize) -> (usize, Vec<u8>) {
+    let count = memchr::memchr_iter(b'\n', text).count();
+    let ended = text.ends_with(b"\n");
+    let from = memchr::memrchr(b'\n', &text[..text.len() - usize::from(ended)]).map_or(0, |n| n + 1);
+    (first_line + count - usize::from(ended), text[from..].trim_ascii_end().to_vec())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

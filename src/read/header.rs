@@ -1,6 +1,8 @@
 //! The header: `# 4 3.0 wxyz`, boxes, length of a box, order of a quaternion's parts.
+//! A line whose first word is no whole number may be a header of the other family: `kind`.
 
 use super::Order;
+use super::kind;
 use super::refusal::Problem;
 use super::words::{number, quoted, words};
 use crate::clip::Body;
@@ -19,6 +21,8 @@ pub(super) struct Header {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Line {
     Header(Header),
+    /// A header of a path or of rotations.
+    Kind(kind::Header),
     /// A comment; where it nearly is a header, the place and the reason it is none.
     Comment(Option<(usize, String)>),
     /// A header with a mistake, at a place in the line.
@@ -29,13 +33,23 @@ pub(super) enum Line {
 pub(super) const ADVICE: &str =
     "begin the file with the number of boxes and the length of a box, such as '# 4 3.0'";
 
+/// [`ADVICE`] where the first row has as many numbers as no keyframe has, but a point may.
+pub(super) fn advice(numbers: usize) -> &'static str {
+    match numbers {
+        3 | 4 | 7 | 8 => {
+            "begin a file of points with its kind, such as '# bezier', '# catmull-rom 20' or '# polyline'"
+        }
+        _ => ADVICE,
+    }
+}
+
 /// Reads a line that begins with `#`. It is a header if it holds a whole number, at most
 /// one length and at most `wxyz` or `xyzw`, and nothing else.
 pub(super) fn parse(line: &[u8]) -> Line {
     let hash = line.iter().position(|&b| b == b'#').map_or(0, |at| at + 1);
     let mut rest: Vec<(usize, &[u8])> = words(&line[hash..]).map(|(at, word)| (at + hash, word)).collect();
     if rest.is_empty() || !is_whole(rest[0].1) {
-        return Line::Comment(None);
+        return kind::parse(&rest);
     }
     let (boxes_at, boxes) = rest.remove(0);
     let order = rest.last().and_then(|(_, word)| Order::from_name_bytes(word));
@@ -113,7 +127,7 @@ fn is_whole(word: &[u8]) -> bool {
 }
 
 /// Whether someone meant a number: `3,0`, `nan`, `1e999`.
-fn looks_like_a_number(word: &[u8]) -> bool {
+pub(super) fn looks_like_a_number(word: &[u8]) -> bool {
     let dotted: Vec<u8> = word.iter().map(|&b| if b == b',' { b'.' } else { b }).collect();
     fast_float2::parse::<f64, _>(&dotted).is_ok()
 }

@@ -1,10 +1,13 @@
 //! A keyframe file, from its first byte to a clip.
 
-use super::blocks::{Block, Blocks, lines};
+use super::blocks::{Block, Blocks, last_line, lines};
 use super::header::{self, ADVICE, Header};
+use super::kind;
 use super::oddities::Oddities;
 use super::refusal::{Problem, Refusal};
 use super::rows::{self, Form, Rows};
+use super::table::Opening;
+use super::times;
 use super::words::{not_utf8, quoted, skip_space, words};
 use super::{Error, Order};
 use crate::clip::{Clip, Lines, Warning};
@@ -36,7 +39,26 @@ pub fn keyframes(
     input: impl Read + Send,
     order: Option<Order>,
 ) -> Result<Keyframes, Error> {
-    let mut blocks = Blocks::new(input);
+    match start(source_name, &mut Blocks::new(input), order)? {
+        Start::Keyframes(keyframes) => Ok(keyframes),
+        Start::Other(opening) => Err(opening.refuse_as_keyframes(source_name).into()),
+    }
+}
+
+/// What a file turned out to be.
+pub(super) enum Start {
+    /// Keyframes, read to the end.
+    Keyframes(Keyframes),
+    /// Something else, read to its header.
+    Other(Box<Opening>),
+}
+
+/// Reads a keyframe file to its end, and any other file to its header.
+pub(super) fn start<R: Read + Send>(
+    source_name: &str,
+    blocks: &mut Blocks<R>,
+    order: Option<Order>,
+) -> Result<Start, Error> {
     let io = |error| Error::Io { source_name: source_name.to_owned(), error };
     let mut reader = Reader::new(source_name, order);
     let mut block = blocks.next().map_err(io)?;
@@ -51,14 +73,19 @@ pub fn keyframes(
             Err(Stop::Refused(refusal)) => return Err((*refusal).into()),
             Err(Stop::Miscounted(refusal, count)) => {
                 let rest = next.map_err(io)?;
-                return Err(reader.blame(*refusal, count, &text, rest, &mut blocks).map_err(io)?.into());
+                return Err(reader.blame(*refusal, count, &text, rest, blocks).map_err(io)?.into());
+            }
+            Err(Stop::Other(header, from)) => {
+                let next = next.map_err(io)?;
+                return Ok(Start::Other(Box::new(Opening::new(*header, Block { text, line }, from, next))));
             }
         }
     }
     let largest_norm_error = reader.oddities.largest_norm_error();
     let (clip, order, warnings) = reader.finish()?;
     let hash = blocks.hasher.finalize().to_hex().to_string();
-    Ok(Keyframes { clip, order, warnings, largest_norm_error, hash, bytes: blocks.bytes })
+    let bytes = blocks.bytes;
+    Ok(Start::Keyframes(Keyframes { clip, order, warnings, largest_norm_error, hash, bytes }))
 }
 
 /// Why reading stopped.
@@ -67,6 +94,9 @@ enum Stop {
     /// The very first row has another count of numbers than the header says: whether row
     /// or header is wrong, the other rows tell.
     Miscounted(Box<Refusal>, usize),
+    /// The header says that these are no keyframes: the header, and where in the block
+    /// its line begins.
+    Other(Box<kind::Header>, usize),
 }
 
 impl From<Refusal> for Stop {
@@ -79,6 +109,8 @@ struct Reader<'a> {
     source_name: &'a str,
     order: Option<Order>,
     header: Option<(Header, usize, Vec<u8>)>,
+    /// A header of another family, and where in the block its line begins.
+    other: Option<(Box<kind::Header>, usize)>,
     /// The first comment that nearly is a header: line and reason.
     near_header: Option<(usize, String)>,
     start: f64,
@@ -96,6 +128,7 @@ impl<'a> Reader<'a> {
             source_name,
             order,
             header: None,
+            other: None,
             near_header: None,
             start: 0.0,
             times: Vec::new(),
@@ -128,6 +161,9 @@ impl<'a> Reader<'a> {
     fn take(&mut self, text: &[u8], first_line: usize) -> Result<(), Stop> {
         let (from, skipped) =
             if self.header.is_none() { self.find_header(text, first_line)? } else { (0, 0) };
+        if let Some((header, start)) = self.other.take() {
+            return Err(Stop::Other(header, start));
+        }
         self.remember_last_line(text, first_line);
         let Some((header, ..)) = self.header else { return Ok(()) };
         let order = self.order.or(header.order).unwrap_or_default();
@@ -161,6 +197,10 @@ impl<'a> Reader<'a> {
                     self.header = Some((header, at, line.to_vec()));
                     return Ok(((start + line.len()).min(text.len()), number));
                 }
+                header::Line::Kind(header) => {
+                    self.other = Some((Box::new(header), start));
+                    return Ok((start, number));
+                }
                 header::Line::Wrong(offset, problem) => return Err(self.refuse(at, line, offset, problem)),
                 header::Line::Comment(reason) => {
                     let near = reason.map(|(_, reason)| (at, reason));
@@ -178,7 +218,7 @@ impl<'a> Reader<'a> {
             None => String::new(),
         };
         let problem = Problem::new(format!("expected a header before the first row, found {found}{near}"));
-        self.refuse(line, text, offset, problem.hint(ADVICE))
+        self.refuse(line, text, offset, problem.hint(header::advice(words(text).count())))
     }
 
     fn append(&mut self, rows: Rows, text: &[u8], first_line: usize, form: Form) -> Result<(), Stop> {
@@ -212,42 +252,17 @@ impl<'a> Reader<'a> {
     }
 
     fn push_time(&mut self, time: f64, text: &[u8], line: usize) -> Result<(), Refusal> {
-        let t = time - self.start;
-        let problem = match self.times.last() {
-            None => None,
-            Some(_) if !t.is_finite() => Some((
-                format!("expected a time less than 1.8e308 s after the first, in line {}", self.lines.of(0)),
-                "no number can hold the time between them",
-            )),
-            Some(&before) if t > before => None,
-            Some(&before) => {
-                let earlier = self.start + before;
-                let line = self.lines.of(self.times.len() - 1);
-                Some(if time > earlier {
-                    let what = format!("expected a time that float64 can tell from the one in line {line}");
-                    (what, "times are counted from the first: one that is far away blurs all others")
-                } else {
-                    let what = format!("expected a time later than {earlier} in line {line}");
-                    (what, "times must increase from row to row")
-                })
-            }
-        };
-        if let Some((expected, hint)) = problem {
-            let text = lines(text).next().map_or(b"".as_slice(), |(_, line)| line);
-            let found = words(text).next().map_or_else(String::new, |(_, word)| quoted(word));
-            let problem = Problem::new(format!("{expected}, found {found}")).hint(hint);
-            return Err(self.refuse(line, text, skip_space(text, 0), problem));
+        let before = self.times.last().copied();
+        let text = lines(text).next().map_or(b"".as_slice(), |(_, line)| line);
+        match times::next(self.start, before, time, || self.lines.of(self.times.len() - 1), text) {
+            Ok(t) => self.times.push(t),
+            Err(problem) => return Err(self.refuse(line, text, skip_space(text, 0), problem)),
         }
-        self.times.push(t);
         Ok(())
     }
 
     fn remember_last_line(&mut self, text: &[u8], first_line: usize) {
-        let count = memchr::memchr_iter(b'\n', text).count();
-        let ended = text.ends_with(b"\n");
-        let from = memchr::memrchr(b'\n', &text[..text.len() - usize::from(ended)]).map_or(0, |n| n + 1);
-        let line = &text[from..];
-        self.last_line = (first_line + count - usize::from(ended), line.trim_ascii_end().to_vec());
+        self.last_line = last_line(text, first_line);
     }
 
     /// Decides who is wrong where the first row does not have the header's count: the
@@ -260,21 +275,9 @@ impl<'a> Reader<'a> {
         rest: Option<Block>,
         blocks: &mut Blocks<R>,
     ) -> std::io::Result<Refusal> {
-        let mut seen = 0;
-        let mut agree = |text: &[u8]| {
-            rows::word_counts(text).all(|n| {
-                seen += 1;
-                n == count
-            })
-        };
-        let mut all = agree(text);
-        let mut block = rest;
-        while let Some(next) = block.filter(|_| all) {
-            all = agree(&next.text);
-            block = blocks.next()?;
-        }
-        Ok(match &self.header {
-            Some((header, line, text)) if all && seen > 1 => {
+        let agreeing = rows::agreeing(count, text, rest, blocks)?;
+        Ok(match (&self.header, agreeing) {
+            (Some((header, line, text)), Some(seen)) if seen > 1 => {
                 let problem = disagreement(*header, seen, count);
                 self.refuse(*line, text, header.boxes_at, problem)
             }

@@ -1,4 +1,4 @@
-//! Text to checked keyframes.
+//! Text to checked keyframes, points of a path, or rotations.
 //!
 //! A `.dat` file is read in blocks of whole lines, whose rows are parsed in parallel
 //! as bytes; positions are worked out only when there is something to say. Reading
@@ -6,14 +6,23 @@
 
 mod blocks;
 mod header;
+mod input;
 mod keyframes;
+mod kind;
 mod oddities;
+mod path;
 mod refusal;
+mod rotations;
 mod rows;
+mod table;
+mod times;
 mod words;
 
+pub use input::{Input, input};
 pub use keyframes::{Keyframes, keyframes};
+pub use path::{PathFile, PathKind};
 pub use refusal::Refusal;
+pub use rotations::{Rotations, RotationsFile};
 
 /// The order in which a file gives a quaternion's parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -48,6 +57,34 @@ impl Order {
             Order::Wxyz => Order::Xyzw,
             Order::Xyzw => Order::Wxyz,
         }
+    }
+}
+
+/// Whose x, y and z a file's numbers are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Frame {
+    /// glTF's own: +Z forward, +Y up, +X to the left.
+    #[default]
+    Gltf,
+    /// Aerospace: x forward, y right, z down.
+    Frd,
+    /// ROS: x forward, y left, z up.
+    Flu,
+}
+
+impl Frame {
+    /// As headers and options spell it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Frame::Gltf => "gltf",
+            Frame::Frd => "frd",
+            Frame::Flu => "flu",
+        }
+    }
+
+    /// The frame of a name, if it is one.
+    pub fn from_name(name: &str) -> Option<Frame> {
+        [Frame::Gltf, Frame::Frd, Frame::Flu].into_iter().find(|frame| frame.name() == name)
     }
 }
 

@@ -12,7 +12,7 @@ const NOT_UNIT: f64 = 1e-3;
 pub(super) struct Oddities {
     not_unit: usize,
     /// Distance from 1, length, line and box of the worst.
-    worst: Option<(f64, f64, usize, usize)>,
+    worst: Option<Worst>,
     /// Signs seen of the part that the order makes the scalar.
     scalar: Signs,
     /// Signs seen of the part that the other order would make the scalar.
@@ -23,6 +23,8 @@ pub(super) struct Oddities {
     other_identities: usize,
     other_identity_line: Option<usize>,
 }
+
+type Worst = (f64, f64, usize, Option<usize>);
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Signs {
@@ -60,8 +62,8 @@ impl Oddities {
         }
     }
 
-    /// Looks at a quaternion's length.
-    pub(super) fn measure(&mut self, norm: f64, line: usize, index: usize) {
+    /// Looks at a quaternion's length; `index` is its box, if boxes are what it turns.
+    pub(super) fn measure(&mut self, norm: f64, line: usize, index: Option<usize>) {
         let off = (norm - 1.0).abs();
         self.not_unit += usize::from(off > NOT_UNIT);
         if self.worst.is_none_or(|worst| off > worst.0) {
@@ -84,7 +86,7 @@ impl Oddities {
 
     /// What was seen in both; `self` comes first in the file.
     pub(super) fn and(self, b: Oddities) -> Oddities {
-        let worse = |a: (f64, f64, usize, usize), b: (f64, f64, usize, usize)| if b.0 > a.0 { b } else { a };
+        let worse = |a: Worst, b: Worst| if b.0 > a.0 { b } else { a };
         Oddities {
             not_unit: self.not_unit + b.not_unit,
             worst: self.worst.map(|a| b.worst.map_or(a, |b| worse(a, b))).or(b.worst),
@@ -109,10 +111,9 @@ impl Oddities {
         };
         let readable = (1e-3..1e6).contains(&norm);
         let length = if readable { format!("{norm:.6}") } else { format!("{norm:.3e}") };
-        let message = format!(
-            "{count} not of unit length, the worst in line {line} (box {}: length {length}); normalised",
-            index + 1
-        );
+        let of = index.map_or_else(String::new, |index| format!("box {}: ", index + 1));
+        let message =
+            format!("{count} not of unit length, the worst in line {line} ({of}length {length}); normalised");
         Some(Warning::new("NOT_UNIT", message))
     }
 

@@ -1,12 +1,13 @@
 //! Rows of numbers: a time and a quaternion for each box.
 
 use super::Order;
-use super::blocks::lines;
+use super::blocks::{Block, Blocks, lines};
 use super::oddities::Oddities;
 use super::refusal::Problem;
 use super::words::{not_utf8, number, skip_space, words};
 use crate::math::Quat;
 use rayon::prelude::*;
+use std::io::{self, Read};
 
 /// What every row must look like.
 #[derive(Clone, Copy, Debug)]
@@ -112,7 +113,7 @@ impl Rows {
         let start = skip_space(line, 0);
         match line.get(start) {
             None => return Ok(()),
-            Some(b'#') => return check_utf8(line),
+            Some(b'#') => return check_utf8(line).map_err(|(offset, problem)| (offset, problem, false)),
             Some(_) => {}
         }
         let refuse = |offset| move |problem| (offset, problem, false);
@@ -130,7 +131,8 @@ impl Rows {
                 }
                 (*part, at) = number(line, from).map_err(refuse(from))?;
             }
-            let key = self.unit(parts, form.order, place.1, index).map_err(refuse(first))?;
+            let key =
+                unit(&mut self.oddities, parts, form.order, place.1, Some(index)).map_err(refuse(first))?;
             self.keys.push(key);
         }
         let surplus = skip_space(line, at);
@@ -142,31 +144,38 @@ impl Rows {
         self.places.push(place);
         Ok(())
     }
+}
 
-    fn unit(&mut self, parts: [f64; 4], order: Order, line: usize, index: usize) -> Result<Quat, Problem> {
-        let q = match order {
-            Order::Wxyz => Quat::from_wxyz(parts),
-            Order::Xyzw => Quat::from_xyzw(parts),
-        };
-        self.oddities.look(parts, order, line);
-        // Scaled by a power of two where the squares would overflow or vanish.
-        let largest = parts.iter().fold(0.0, |m: f64, p| m.max(p.abs()));
-        if largest == 0.0 {
-            return Err(Problem::new("expected a rotation, found a quaternion of zeros").hint(match order {
-                Order::Wxyz => "no rotation is '1 0 0 0' in the order w x y z",
-                Order::Xyzw => "no rotation is '0 0 0 1' in the order x y z w",
-            }));
-        }
-        let scale = match largest {
-            l if l < 1e-150 => 2f64.powi(700),
-            l if l > 1e150 => 2f64.powi(-700),
-            _ => 1.0,
-        };
-        let scaled = Quat { w: q.w * scale, v: q.v * scale };
-        let norm = scaled.dot(scaled).sqrt();
-        self.oddities.measure(norm / scale, line, index);
-        Ok(Quat { w: scaled.w / norm, v: scaled.v * (1.0 / norm) })
+/// The unit quaternion of four parts, and a note of what is odd about them.
+pub(super) fn unit(
+    oddities: &mut Oddities,
+    parts: [f64; 4],
+    order: Order,
+    line: usize,
+    index: Option<usize>,
+) -> Result<Quat, Problem> {
+    let q = match order {
+        Order::Wxyz => Quat::from_wxyz(parts),
+        Order::Xyzw => Quat::from_xyzw(parts),
+    };
+    oddities.look(parts, order, line);
+    // Scaled by a power of two where the squares would overflow or vanish.
+    let largest = parts.iter().fold(0.0, |m: f64, p| m.max(p.abs()));
+    if largest == 0.0 {
+        return Err(Problem::new("expected a rotation, found a quaternion of zeros").hint(match order {
+            Order::Wxyz => "no rotation is '1 0 0 0' in the order w x y z",
+            Order::Xyzw => "no rotation is '0 0 0 1' in the order x y z w",
+        }));
     }
+    let scale = match largest {
+        l if l < 1e-150 => 2f64.powi(700),
+        l if l > 1e150 => 2f64.powi(-700),
+        _ => 1.0,
+    };
+    let scaled = Quat { w: q.w * scale, v: q.v * scale };
+    let norm = scaled.dot(scaled).sqrt();
+    oddities.measure(norm / scale, line, index);
+    Ok(Quat { w: scaled.w / norm, v: scaled.v * (1.0 / norm) })
 }
 
 fn miscounted(line: &[u8], form: Form, offset: usize) -> Refused {
@@ -179,15 +188,40 @@ fn miscounted(line: &[u8], form: Form, offset: usize) -> Refused {
     (offset, problem, true)
 }
 
-fn check_utf8(line: &[u8]) -> Result<(), Refused> {
+/// Whether a comment is text, or the place where it is not.
+pub(super) fn check_utf8(line: &[u8]) -> Result<(), (usize, Problem)> {
     match std::str::from_utf8(line) {
         Ok(_) => Ok(()),
-        Err(error) => Err((error.valid_up_to(), not_utf8(line[error.valid_up_to()]), false)),
+        Err(error) => Err((error.valid_up_to(), not_utf8(line[error.valid_up_to()]))),
     }
 }
 
+/// How many rows there are, if all of them from `text` to the end of the file have `count`
+/// numbers; `rest` is the block after `text`.
+pub(super) fn agreeing<R: Read>(
+    count: usize,
+    text: &[u8],
+    rest: Option<Block>,
+    blocks: &mut Blocks<R>,
+) -> io::Result<Option<usize>> {
+    let mut seen = 0;
+    let mut agree = |text: &[u8]| {
+        word_counts(text).all(|n| {
+            seen += 1;
+            n == count
+        })
+    };
+    let mut all = agree(text);
+    let mut block = rest;
+    while let Some(next) = block.filter(|_| all) {
+        all = agree(&next.text);
+        block = blocks.next()?;
+    }
+    Ok(all.then_some(seen))
+}
+
 /// How many words each row of a text has; comments and blank lines do not count.
-pub(super) fn word_counts(text: &[u8]) -> impl Iterator<Item = usize> {
+fn word_counts(text: &[u8]) -> impl Iterator<Item = usize> {
     let rows = lines(text).filter(|(_, line)| {
         let start = skip_space(line, 0);
         line.get(start).is_some_and(|&b| b != b'#')

@@ -293,7 +293,8 @@ mod tests {
             prop_assert!(keys.iter().chain(&ramp).all(|&key| found.contains(&(key as f32))));
             let fps: Fps = fps.parse().unwrap();
             let widest = found.windows(2).map(|pair| f64::from(pair[1]) - f64::from(pair[0])).fold(0.0, f64::max);
-            prop_assert!(widest < fps.interval() + 1e-3 + 1e-6);
+            // Below 32 s float32 times are 2e-6 apart.
+            prop_assert!(widest < fps.interval() + 1e-3 + 4e-6);
         }
     }
 }
