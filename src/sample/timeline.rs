@@ -293,8 +293,9 @@ mod tests {
             prop_assert!(keys.iter().chain(&ramp).all(|&key| found.contains(&(key as f32))));
             let fps: Fps = fps.parse().unwrap();
             let widest = found.windows(2).map(|pair| f64::from(pair[1]) - f64::from(pair[0])).fold(0.0, f64::max);
-            // Below 32 s float32 times are 2e-6 apart.
-            prop_assert!(widest < fps.interval() + 1e-3 + 4e-6);
+            // At either end a grid time may give way to a key within 1 ms; below 32 s
+            // float32 times are 2e-6 apart.
+            prop_assert!(widest < fps.interval() + 2e-3 + 4e-6);
         }
     }
 }

@@ -1,0 +1,220 @@
+//! Up carried along a course with the least twist.
+//!
+//! Double reflection: the plane halfway between two points of the course mirrors the
+//! facing at one towards the other, a second mirror makes its forward the tangent
+//! there. The twist it adds is of the fifth order in the step. Source: Wang, Jüttler,
+//! Zheng & Liu 2008, "Computation of Rotation Minimizing Frames"; docs/math/orientation.md.
+
+use super::Course;
+use super::facing::Facing;
+use glam::DVec3;
+
+/// The twist that the steps of a whole course may add up to: 1e-6 degrees.
+const TOLERANCE: f64 = 1e-6 * std::f64::consts::PI / 180.0;
+
+/// Twist below this is rounding, however short the step.
+const ROUNDING: f64 = 1e-14;
+
+/// Steps turn by less than this, radians, unless the course turns within an instant.
+/// So short a step cannot mistake a whole turn for none.
+const LARGEST_TURN: f64 = 0.2;
+
+/// Parts that a segment is split into before any of them is judged.
+const PARTS: usize = 8;
+
+/// Halvings for accuracy: the twist of a step falls by 2⁻⁵⁰.
+const DEEPEST: u32 = 10;
+
+/// Halvings to find a turn within an instant.
+const INSTANT: u32 = 30;
+
+/// A time on the course: where it is and where it leads.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    t: f64,
+    position: DVec3,
+    forward: DVec3,
+}
+
+/// A time on the course whose up is known.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Node {
+    pub(super) t: f64,
+    position: DVec3,
+    pub(super) facing: Facing,
+}
+
+impl Node {
+    /// The facing at a place, one step from here.
+    fn carried_to(&self, place: &Place) -> Facing {
+        let Facing { forward, up } = self.facing;
+        let chord = place.position - self.position;
+        // A chord that does not lie between the tangents (the course stands, or turns
+        // within an instant) says nothing of the way from one to the other.
+        let along = 0.5 * chord.length();
+        if !(chord.dot(forward) > along && chord.dot(place.forward) > along) {
+            return self.facing.turned_to(place.forward);
+        }
+        let halfway = mirror(chord.normalize());
+        let second = mirror((place.forward - halfway(forward)).normalize_or_zero());
+        Facing::new(place.forward, second(halfway(up)))
+    }
+
+    fn step(&self, place: &Place) -> Node {
+        Node { t: place.t, position: place.position, facing: self.carried_to(place) }
+    }
+}
+
+/// Reflection in the plane at a right angle to a unit vector.
+fn mirror(normal: DVec3) -> impl Fn(DVec3) -> DVec3 {
+    move |v| v - normal * (2.0 * normal.dot(v))
+}
+
+/// A course with up known at the nodes of a partition that resolves it.
+pub(super) struct Transport<'a> {
+    pub(super) course: &'a dyn Course,
+    /// In order of time. At a corner two share the time: before it and after it.
+    pub(super) nodes: Vec<Node>,
+}
+
+impl<'a> Transport<'a> {
+    /// Carries the up that is nearest to +Y at the start along the whole course.
+    pub(super) fn new(course: &'a dyn Course) -> Self {
+        let breaks = breaks(course);
+        let mut transport = Transport { course, nodes: Vec::new() };
+        let forward = after(course, breaks[0], breaks[breaks.len() - 1]).unwrap_or(DVec3::Z);
+        let place = Place { t: breaks[0], position: course.position(breaks[0]), forward };
+        let facing = Facing::upright(forward);
+        let mut node = Node { t: place.t, position: place.position, facing };
+        transport.nodes.push(node);
+        for pair in breaks.windows(2) {
+            node = transport.turn(node, pair[1]);
+            node = transport.advance(node, pair[1]);
+        }
+        transport
+    }
+
+    /// Facing at a time, and the node it is carried from.
+    pub(super) fn at(&self, t: f64) -> (usize, Facing) {
+        let t = t.clamp(0.0, self.nodes[self.nodes.len() - 1].t);
+        let i = self.index(t);
+        let place = self.place(t, self.nodes[i].facing.forward);
+        (i, self.nodes[i].carried_to(&place))
+    }
+
+    /// The last node at or before a time.
+    pub(super) fn index(&self, t: f64) -> usize {
+        self.nodes.partition_point(|node| node.t <= t).saturating_sub(1)
+    }
+
+    /// A time on the course; where it has no direction, another's.
+    fn place(&self, t: f64, otherwise: DVec3) -> Place {
+        let forward = unit(self.course.direction(t)).unwrap_or(otherwise);
+        Place { t, position: self.course.position(t), forward }
+    }
+
+    /// The node after the corner that `node` may stand at.
+    fn turn(&mut self, node: Node, next: f64) -> Node {
+        let forward = after(self.course, node.t, next).filter(|_| is_corner(self.course, node.t));
+        let Some(forward) = forward.filter(|_| node.t > 0.0) else { return node };
+        let turned = Node { facing: node.facing.turned_to(forward), ..node };
+        self.nodes.push(turned);
+        turned
+    }
+
+    /// From a break to the next: to the limit from inside where that is a corner.
+    fn advance(&mut self, mut node: Node, end: f64) -> Node {
+        let start = node.t;
+        let share = TOLERANCE * ((end - start) / PARTS as f64) / self.course.duration();
+        for part in 1..=PARTS {
+            let t = if part == PARTS { end } else { start + (end - start) * (part as f64 / PARTS as f64) };
+            let mut place = self.place(t, node.facing.forward);
+            if part == PARTS && is_corner(self.course, end) {
+                place.forward = before(self.course, start, end).unwrap_or(place.forward);
+            }
+            node = self.walk(node, place, Effort { depth: 0, share, twist: f64::INFINITY });
+        }
+        node
+    }
+
+    /// Steps to a place, halved until one step and two agree on the twist.
+    fn walk(&mut self, start: Node, end: Place, effort: Effort) -> Node {
+        let middle = self.place(0.5 * (start.t + end.t), start.facing.forward);
+        let half = start.step(&middle);
+        let fine = half.step(&end);
+        let twist = (fine.facing.up - start.carried_to(&end).up).length();
+        let turns = [start.facing.forward - middle.forward, middle.forward - end.forward];
+        let turn = turns[0].length().max(turns[1].length());
+        if middle.t > start.t && middle.t < end.t && effort.is_asked(turn, twist) {
+            let half = self.walk(start, middle, effort.halved(twist));
+            return self.walk(half, end, effort.halved(twist));
+        }
+        self.nodes.extend([half, fine]);
+        fine
+    }
+}
+
+/// How far a step has been halved, and for what.
+#[derive(Clone, Copy)]
+struct Effort {
+    depth: u32,
+    /// The twist it may add, radians.
+    share: f64,
+    /// What one step and two differed by before it was halved, radians.
+    twist: f64,
+}
+
+impl Effort {
+    fn halved(self, twist: f64) -> Effort {
+        Effort { depth: self.depth + 1, share: 0.5 * self.share, twist }
+    }
+
+    /// Whether a step that turns and twists so much is to be halved.
+    fn is_asked(self, turn: f64, twist: f64) -> bool {
+        // Two steps are 16 times as good as the difference from one says. What does not
+        // shrink with the step is rounding.
+        let resolved = twist <= self.share.max(ROUNDING);
+        let rounding = twist < 1e-8 && twist > self.twist / 8.0;
+        (turn > LARGEST_TURN && self.depth < INSTANT) || (!resolved && !rounding && self.depth < DEEPEST)
+    }
+}
+
+/// The times between which a course is smooth: its ends, key times and corners.
+fn breaks(course: &dyn Course) -> Vec<f64> {
+    let end = course.duration().max(0.0);
+    let inner = course.key_times().iter().chain(course.corners()).copied();
+    let mut breaks: Vec<f64> = inner.filter(|&t| t > 0.0 && t < end).chain([0.0, end]).collect();
+    breaks.sort_by(f64::total_cmp);
+    breaks.dedup();
+    breaks
+}
+
+fn is_corner(course: &dyn Course, t: f64) -> bool {
+    course.corners().binary_search_by(|corner| corner.total_cmp(&t)).is_ok()
+}
+
+fn unit(v: Option<DVec3>) -> Option<DVec3> {
+    v.and_then(DVec3::try_normalize)
+}
+
+/// A billionth of the way from a time to another: inside, even where rounding hides
+/// which way a course leaves its rest.
+const INSIDE: f64 = 1e-9;
+
+/// The direction just after a time, on the way to the next break.
+fn after(course: &dyn Course, t: f64, next: f64) -> Option<DVec3> {
+    limit(course, [t, t.next_up(), (t + INSIDE * (next - t)).max(t.next_up()).min(next)])
+}
+
+/// The direction just before a time, on the way from the break before.
+fn before(course: &dyn Course, previous: f64, t: f64) -> Option<DVec3> {
+    limit(course, [t, t.next_down(), (t - INSIDE * (t - previous)).min(t.next_down()).max(previous)])
+}
+
+/// The direction at the first of some times that agrees with the one further inside: a
+/// course turns by less than 1e-6 in a billionth of a segment.
+fn limit(course: &dyn Course, times: [f64; 3]) -> Option<DVec3> {
+    let [at, beside, inside] = times.map(|t| unit(course.direction(t)));
+    let inside = inside?;
+    [at, beside].into_iter().flatten().find(|d| d.distance(inside) < 1e-6).or(Some(inside))
+}

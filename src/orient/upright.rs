@@ -1,0 +1,85 @@
+//! `upright`: forward along the course, head up.
+
+use super::bank::Bank;
+use super::facing::{roll, tilt};
+use super::passage::{Passage, passages};
+use super::{Attitude, Course, Tangent, continued, smoothstep, wrapped};
+use crate::math::Quat;
+
+/// Nearer to the vertical than this, radians, up is no longer told by +Y alone.
+pub(super) const STEEP: f64 = 15.0 * std::f64::consts::PI / 180.0;
+
+/// Forward along the course, up as near to +Y as it can be, leaning into turns.
+///
+/// Within 15° of the vertical, where "nearest to +Y" turns about in no time, up blends
+/// to one that is carried along without twist, halfway between what +Y asks for on the
+/// way in and on the way out: a loop rolls smoothly there and does not flip.
+pub struct Upright<'a> {
+    tangent: Tangent<'a>,
+    /// Each with the roll, relative to the tangent's up, of the up that is carried.
+    steep: Vec<(Passage, f64)>,
+    bank: Option<Bank>,
+    signs: Vec<Quat>,
+}
+
+impl<'a> Upright<'a> {
+    /// `bank`: the lean in the sharpest turn, degrees; negative leans out of turns.
+    pub fn new(course: &'a dyn Course, bank: f64) -> Self {
+        let tangent = Tangent::new(course);
+        let steep =
+            passages(&tangent, STEEP).into_iter().map(|p| (carried(&p), p)).map(|(roll, p)| (p, roll));
+        let steep = steep.collect();
+        let bank = (bank != 0.0 && course.duration() > 0.0).then(|| Bank::new(course, bank));
+        let mut upright = Upright { tangent, steep, bank, signs: Vec::new() };
+        let nodes = 0..upright.tangent.nodes();
+        upright.signs = continued(nodes.map(|i| upright.turned(upright.tangent.node(i).0).1));
+        upright
+    }
+
+    /// The rotation at a time, its sign as it comes, and the last node before it.
+    fn turned(&self, t: f64) -> (usize, Quat) {
+        let (node, facing) = self.tangent.facing(t);
+        let upright = facing.roll_to_upright();
+        let blended = self.steep_at(t).map_or(upright, |carried| {
+            let weight = smoothstep(tilt(facing.forward) / STEEP);
+            carried + blend(upright - carried, weight)
+        });
+        let lean =
+            self.bank.as_ref().map_or(0.0, |bank| bank.at(t.clamp(0.0, self.tangent.course().duration())));
+        (node, facing.rotation() * roll(blended + lean))
+    }
+
+    /// The roll that is carried through a time, if it is steep then.
+    fn steep_at(&self, t: f64) -> Option<f64> {
+        let next = self.steep.partition_point(|(passage, _)| passage.end < t);
+        self.steep.get(next).filter(|(passage, _)| passage.start <= t).map(|(_, roll)| *roll)
+    }
+}
+
+impl Attitude for Upright<'_> {
+    fn at(&self, t: f64) -> Quat {
+        let (node, rotation) = self.turned(t);
+        rotation.aligned_to(self.signs[node])
+    }
+
+    fn tangent(&self) -> &Tangent<'_> {
+        &self.tangent
+    }
+}
+
+/// The roll that a passage keeps: halfway from that at its start to that at its end, or
+/// of the one it has; none where all of the course is steep.
+fn carried(passage: &Passage) -> f64 {
+    let [before, after] = [passage.before, passage.after].map(|f| f.map(|f| f.roll_to_upright()));
+    match (before, after) {
+        (Some(before), Some(after)) => before + 0.5 * wrapped(after - before),
+        (one, other) => one.or(other).unwrap_or(0.0),
+    }
+}
+
+/// The direction of (1 − w) + w e^{iφ}: from 0 to φ with the weight, by the mean of the
+/// two ups rather than of the angles, so that whole turns of φ do not count.
+fn blend(angle: f64, weight: f64) -> f64 {
+    let (sin, cos) = angle.sin_cos();
+    (weight * sin).atan2(1.0 - weight + weight * cos)
+}
