@@ -22,6 +22,7 @@ pub mod convert;
 pub mod curve;
 pub mod inspect;
 pub mod math;
+pub mod moves;
 pub mod orient;
 pub mod path;
 pub mod read;

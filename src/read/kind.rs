@@ -4,7 +4,9 @@
 use super::header::{Line, looks_like_a_number};
 use super::refusal::Problem;
 use super::words::{number, quoted};
-use super::{Frame, Order, PathKind};
+use super::Order;
+use crate::path::Kind as PathKind;
+use crate::orient::Frame;
 
 /// What a file holds if not keyframes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -20,7 +20,7 @@ mod words;
 
 pub use input::{Input, input};
 pub use keyframes::{Keyframes, keyframes};
-pub use path::{PathFile, PathKind};
+pub use path::PathFile;
 pub use refusal::Refusal;
 pub use rotations::{Rotations, RotationsFile};
 
@@ -57,34 +57,6 @@ impl Order {
             Order::Wxyz => Order::Xyzw,
             Order::Xyzw => Order::Wxyz,
         }
-    }
-}
-
-/// Whose x, y and z a file's numbers are.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Frame {
-    /// glTF's own: +Z forward, +Y up, +X to the left.
-    #[default]
-    Gltf,
-    /// Aerospace: x forward, y right, z down.
-    Frd,
-    /// ROS: x forward, y left, z up.
-    Flu,
-}
-
-impl Frame {
-    /// As headers and options spell it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Frame::Gltf => "gltf",
-            Frame::Frd => "frd",
-            Frame::Flu => "flu",
-        }
-    }
-
-    /// The frame of a name, if it is one.
-    pub fn from_name(name: &str) -> Option<Frame> {
-        [Frame::Gltf, Frame::Frd, Frame::Flu].into_iter().find(|frame| frame.name() == name)
     }
 }
 

@@ -1,11 +1,12 @@
 //! A file of points: a curve through space.
 
 use super::blocks::Blocks;
-use super::kind::Kind;
 use super::table::{self, Form, Keys, Opening, Quaternion, Table};
-use super::{Error, Frame, Order};
+use super::{Error, Order};
+use crate::orient::Frame;
 use crate::clip::{Lines, Warning};
 use crate::math::Quat;
+use crate::path::Kind as PathKind;
 use std::io::Read;
 
 /// What a path file holds, as it stands there: in the file's frame, not yet a curve.
@@ -17,7 +18,7 @@ pub struct PathFile {
     pub duration: Option<f64>,
     /// Every point, in order; as many as `kind` needs.
     pub points: Vec<[f64; 3]>,
-    /// Times of the key points (see [`PathKind::is_key`]), seconds since the first,
+    /// Times of the key points (see [`PathFile::keys`]), seconds since the first,
     /// strictly increasing; if the rows carry times.
     pub times: Option<Vec<f64>>,
     /// Time of the first point as the file gives it, seconds; 0 without times.
@@ -39,42 +40,13 @@ pub struct PathFile {
     pub bytes: u64,
 }
 
-/// What the points of a path are, and how the curve runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PathKind {
-    /// Control points of cubic segments in a row, 3n + 1 of them.
-    Bezier,
-    /// Control points of one Bézier curve of this degree, one more than the degree, which
-    /// is 1 or more.
-    BezierDegree(usize),
-    /// Points to pass through; knots 1 apart.
-    CatmullRom,
-    /// Points to pass through; knots √chord apart.
-    CatmullRomCentripetal,
-    /// Points to pass through; knots a chord apart.
-    CatmullRomChordal,
-    /// Points joined by straight lines.
-    Polyline,
-}
-
-impl PathKind {
-    /// As headers spell it; a degree is not part of it.
-    pub fn name(self) -> &'static str {
-        Kind::Path(self).name()
-    }
-
-    /// Whether the curve passes through point `i` as one of its keys: any point, but of a
-    /// Bézier curve only those where segments begin and end.
-    pub fn is_key(self, i: usize) -> bool {
-        self.keys().contains(i)
-    }
-
-    fn keys(self) -> Keys {
-        match self {
-            PathKind::Bezier => Keys::Cubic,
-            PathKind::BezierDegree(n) => Keys::Degree(n),
-            _ => Keys::Every,
-        }
+/// Which points the curve passes through as its keys: every one, but of a Bézier curve
+/// only those where segments begin and end.
+fn keys(kind: PathKind) -> Keys {
+    match kind {
+        PathKind::Bezier => Keys::Cubic,
+        PathKind::BezierDegree(n) => Keys::Degree(n),
+        _ => Keys::Every,
     }
 }
 
@@ -82,7 +54,7 @@ impl PathFile {
     /// Which of the points are key points, by index; two at least.
     pub fn keys(&self) -> impl Iterator<Item = usize> {
         let kind = self.kind;
-        (0..self.points.len()).filter(move |&i| kind.is_key(i))
+        (0..self.points.len()).filter(move |&i| keys(kind).contains(i))
     }
 }
 
@@ -107,7 +79,7 @@ pub(super) fn read<R: Read>(
         limit: FARTHEST,
         quaternion: Quaternion::Maybe,
         order: order.or(opening.header.order).unwrap_or_default(),
-        keys: kind.keys(),
+        keys: keys(kind),
         nouns,
     };
     let Table { header, values, quaternions, start, times, lines, oddities, .. } =

@@ -3,7 +3,8 @@
 use super::blocks::Blocks;
 use super::kind::Kind;
 use super::table::{self, Form, Keys, Opening, Quaternion, Table};
-use super::{Error, Frame, Order};
+use super::{Error, Order};
+use crate::orient::Frame;
 use crate::clip::{Lines, Warning};
 use crate::math::Quat;
 use std::io::Read;

@@ -106,6 +106,12 @@ impl<'a> Timeline<'a> {
         Ok(timeline)
     }
 
+    /// Whether another timeline of the same rate has the same times.
+    pub fn is_same(&self, other: &Timeline) -> bool {
+        let Knots { keys, ramp, .. } = self.knots;
+        std::ptr::eq(keys, other.knots.keys) && ramp == other.knots.ramp && self.fps == other.fps
+    }
+
     /// How many samples there are.
     #[expect(clippy::len_without_is_empty, reason = "there are at least two")]
     pub fn len(&self) -> usize {

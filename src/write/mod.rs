@@ -7,6 +7,7 @@
 mod container;
 mod document;
 mod free_body;
+mod glider;
 mod mesh;
 mod scene;
 

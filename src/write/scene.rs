@@ -1,7 +1,7 @@
 //! What stands still in a file: the node tree and what hangs on it.
 
-use super::free_body;
 use super::mesh::{Material, Mesh};
+use super::{free_body, glider};
 use crate::clip::Body;
 use glam::Vec3;
 
@@ -80,9 +80,24 @@ impl Scene {
 
     fn free_body() -> Scene {
         let mesh = free_body::mesh(&free_body::Colours { body: 0, nose: 1, fin: 2, axes: [3, 4, 5] });
+        Scene { turned: vec![1], ..Scene::single("body", mesh, &FREE_BODY) }
+    }
+
+    /// The glider that a path alone moves.
+    pub fn glider() -> Scene {
+        Scene::single("glider", glider::mesh(), &glider::COLOURS)
+    }
+
+    /// One mesh on a node of its own below the root; nothing turns yet.
+    fn single(name: &str, mesh: Mesh, materials: &[Material]) -> Scene {
         let root = Node { name: "root".into(), children: vec![1], ..Node::default() };
-        let body = Node { name: "body".into(), mesh: Some(0), ..Node::default() };
-        Scene { nodes: vec![root, body], meshes: vec![mesh], materials: FREE_BODY.to_vec(), turned: vec![1] }
+        let body = Node { name: name.into(), mesh: Some(0), ..Node::default() };
+        Scene {
+            nodes: vec![root, body],
+            meshes: vec![mesh],
+            materials: materials.to_vec(),
+            turned: Vec::new(),
+        }
     }
 
     /// The bytes that stand before all samples: vertices, then indices.

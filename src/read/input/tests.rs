@@ -1,6 +1,7 @@
 use super::*;
 use crate::math::Quat;
-use crate::read::{Frame, PathKind, Rotations, keyframes};
+use crate::read::{PathKind, Rotations, keyframes};
+use crate::orient::Frame;
 use proptest::prelude::*;
 
 fn read(text: impl AsRef<[u8]>) -> Result<Input, Error> {
