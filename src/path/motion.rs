@@ -1,6 +1,5 @@
 //! A path: its curve with its timing.
 
-use super::bezier::Bezier;
 use super::knots::{self, SHORTEST, Spacing};
 use super::piece::Piece;
 use super::pieces::{self, Part};
@@ -164,7 +163,7 @@ impl Path {
     }
 
     /// Acceleration at t, units a second squared. At the tip of a cusp that is run
-    /// through at constant speed there is none, and only its part along the path counts.
+    /// through at constant speed it has no limit, and only its part along the path counts.
     pub fn acceleration(&self, t: f64) -> DVec3 {
         self.state(self.piece_at(t), t).acceleration * self.unit
     }
@@ -213,17 +212,17 @@ impl Path {
 
     /// The place of t in a piece's curve, 0..=1.
     pub(super) fn parameter(&self, piece: &Piece, t: f64) -> f64 {
+        // At the piece's own ends exactly there, whatever rounding says.
+        if t <= piece.start {
+            return 0.0;
+        }
+        if t >= piece.end {
+            return 1.0;
+        }
         match (self.steady, &piece.arc) {
             (Some(ease), Some(arc)) => {
                 let way = self.length * ease.at(self.fraction(piece, t))[0];
-                // At the piece's own ends exactly there, whatever rounding says.
-                if t <= piece.start {
-                    0.0
-                } else if t >= piece.start + piece.duration {
-                    1.0
-                } else {
-                    arc.parameter(&piece.curve, way - piece.before)
-                }
+                arc.parameter(&piece.curve, way - piece.before)
             }
             _ => ((t - piece.start) / piece.duration).clamp(0.0, 1.0),
         }
@@ -231,7 +230,7 @@ impl Path {
 
     /// The fraction of the path's time at t, within the piece.
     fn fraction(&self, piece: &Piece, t: f64) -> f64 {
-        (t.clamp(piece.start, piece.start + piece.duration) / self.duration).clamp(0.0, 1.0)
+        (t.clamp(piece.start, piece.end) / self.duration).clamp(0.0, 1.0)
     }
 
     fn state(&self, piece: &Piece, t: f64) -> State {
@@ -245,7 +244,7 @@ impl Path {
         let (speed, change) =
             (speed * self.length / self.duration, change * self.length / (self.duration * self.duration));
         let tangent = piece.direction(u).unwrap_or(DVec3::ZERO);
-        let turning = curvature(tangent, first, second);
+        let turning = if piece.is_straight() { DVec3::ZERO } else { curvature(tangent, first, second) };
         State {
             position,
             velocity: tangent * speed,
@@ -253,27 +252,19 @@ impl Path {
         }
     }
 
-    /// The curves of the pieces that overlap t0..t1, with the parts of them that do and how much of
-    /// the piece's parameter these are.
-    pub(super) fn overlapping(&self, t0: f64, t1: f64) -> impl Iterator<Item = (&Piece, Bezier, f64)> {
+    /// The pieces that overlap t0..t1, each with the range of its parameter that does.
+    pub(super) fn overlapping(&self, t0: f64, t1: f64) -> impl Iterator<Item = (&Piece, f64, f64)> {
         let first = self.pieces.partition_point(|piece| piece.start <= t0).saturating_sub(1);
-        let pieces = self.pieces[first..].iter().take_while(move |piece| piece.start < t1 || t1 <= 0.0);
-        pieces.map(move |piece| {
-            // An inversion of the length may err in its last digits.
-            let slack = 1e-12;
-            let from = (self.parameter(piece, t0) - slack).clamp(0.0, 1.0 - slack);
-            let to = (self.parameter(piece, t1) + slack).clamp(from + slack, 1.0);
-            (piece, piece.curve.part(from, to), to - from)
-        })
+        let after = self.pieces.partition_point(|piece| piece.start < t1).max(first + 1);
+        let range = move |piece| (piece, self.parameter(piece, t0), self.parameter(piece, t1));
+        self.pieces[first..after].iter().map(range)
     }
 }
 
 /// The derivative of the unit tangent by arc length, (B″ − (B″·T)T)/|B′|².
 fn curvature(tangent: DVec3, first: DVec3, second: DVec3) -> DVec3 {
-    let across = second - tangent * second.dot(tangent);
-    let curvature = across / first.length_squared();
-    // On a straight line only rounding is left, which must not be divided by little.
-    if across.length() > 1e-14 * second.length() && curvature.is_finite() { curvature } else { DVec3::ZERO }
+    let curvature = (second - tangent * second.dot(tangent)) / first.length_squared();
+    if curvature.is_finite() { curvature } else { DVec3::ZERO }
 }
 
 /// The power of two next below the largest coordinate.

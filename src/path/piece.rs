@@ -12,7 +12,9 @@ pub(super) struct Piece {
     pub(super) curve: Bezier,
     /// When it begins, seconds.
     pub(super) start: f64,
-    /// How long it takes, seconds; above 0.
+    /// When the next one begins, seconds.
+    pub(super) end: f64,
+    /// How long it takes, seconds, above 0: their difference, without its rounding.
     pub(super) duration: f64,
     /// Length of the path up to here.
     pub(super) before: f64,
@@ -27,6 +29,14 @@ impl Piece {
     /// Whether all control points are one.
     pub(super) fn rests(&self) -> bool {
         self.curve.fastest() <= COINCIDENT
+    }
+
+    /// Whether it lies on a line, as far as rounding lets one tell.
+    pub(super) fn is_straight(&self) -> bool {
+        let hodograph = self.curve.hodograph();
+        let fastest = self.curve.fastest();
+        let Some(along) = hodograph.iter().find(|v| v.length() >= 0.5 * fastest) else { return true };
+        hodograph.iter().all(|v| v.cross(along.normalize_or_zero()).length() <= 1e-14 * fastest)
     }
 
     /// Unit direction at its start: where control points coincide, the limit.

@@ -50,14 +50,9 @@ pub(super) fn keyed(parts: Vec<Part>, key_times: &[f64], steps: &[f64], duration
         let seconds = steps[part.segment] / total * duration;
         let (from, to) = part.within;
         let start = key_times[part.segment] + from * seconds;
-        Piece {
-            start,
-            duration: (to - from) * seconds,
-            before: part.before,
-            curve: part.curve,
-            arc: None,
-            held: None,
-        }
+        let end = if to < 1.0 { key_times[part.segment] + to * seconds } else { key_times[part.segment + 1] };
+        let Part { before, curve, .. } = part;
+        Piece { start, end, duration: (to - from) * seconds, before, curve, arc: None, held: None }
     });
     with_directions(timed.collect())
 }
@@ -68,7 +63,7 @@ pub(super) fn steady(parts: Vec<Part>, time_at: impl Fn(f64) -> f64) -> Vec<Piec
     let timed = parts.into_iter().map(|part| {
         let (start, end) = (time_at(part.before), time_at(part.behind()));
         let Part { before, curve, arc, .. } = part;
-        Piece { start, duration: end - start, before, curve, arc: Some(arc), held: None }
+        Piece { start, end, duration: end - start, before, curve, arc: Some(arc), held: None }
     });
     with_directions(timed.filter(|piece| !piece.rests() && piece.duration > 0.0).collect())
 }
