@@ -4,6 +4,7 @@
 use dat2glb::convert::{Options, Plan};
 use dat2glb::curve::{Arc, Ends, Motion, Scheme};
 use dat2glb::math::{Quat, Vec3};
+use dat2glb::moves::{Ground, Inputs, Shape};
 use dat2glb::read::{self, Keyframes};
 use dat2glb::sample::{Fps, Rotation, Timeline, rotations};
 use divan::counter::{BytesCount, ItemsCount};
@@ -87,13 +88,14 @@ fn write(bencher: Bencher, scheme: &str) {
     let keyframes = keyframes(4, 10_000);
     let options = Options {
         name: "bench".into(),
-        input: "bench.dat".into(),
+        inputs: vec!["bench.dat".into()],
         schemes: vec![Scheme::from_name(scheme).unwrap()],
-        ends: Ends::Natural,
         fps: Fps::DEFAULT,
         key_times: true,
     };
-    let plan = Plan::new(&keyframes, "bench.dat", &options).unwrap();
+    let inputs = Inputs { keyframes: Some(keyframes), path: None };
+    let ground = Ground::new(&inputs, Shape::default(), &options.schemes).unwrap();
+    let plan = Plan::new(&ground, "bench.dat", &options).unwrap();
     bencher
         .counter(ItemsCount::new(plan.samples()))
         .bench(|| plan.write_glb(Cursor::new(Vec::new()), |_| ()).unwrap());

@@ -207,7 +207,9 @@ impl<'a> Ground<'a> {
         let zero = starts.fold(f64::INFINITY, f64::min);
         let on_clock = |t: f64| t / shape.time_scale;
         let key_times = match clip {
-            Some(clip) if clip.start == zero && shape.time_scale == 1.0 => Cow::Borrowed(clip.times.as_slice()),
+            Some(clip) if clip.start == zero && shape.time_scale == 1.0 => {
+                Cow::Borrowed(clip.times.as_slice())
+            }
             Some(clip) => Cow::Owned(clip.times.iter().map(|t| on_clock(clip.start - zero + t)).collect()),
             None => Cow::Borrowed([].as_slice()),
         };
@@ -291,6 +293,19 @@ impl<'a> Ground<'a> {
     }
 }
 
+/// Keys at times that float32 can tell apart: of several at one time the last counts,
+/// which faces the way on.
+fn apart(keys: impl Iterator<Item = (f64, Quat)>) -> (Vec<f64>, Vec<Quat>) {
+    let mut kept: Vec<(f64, Quat)> = Vec::new();
+    for (time, key) in keys {
+        match kept.last_mut() {
+            Some(last) if last.0 as f32 == time as f32 => last.1 = key,
+            _ => kept.push((time, key)),
+        }
+    }
+    kept.into_iter().unzip()
+}
+
 /// Times in order, those that float32 cannot tell apart taken for one.
 fn merged(times: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut times: Vec<f64> = times.collect();
@@ -306,7 +321,8 @@ impl Way {
         let frame = shape.frame.or(file.frame).unwrap_or(Frame::Gltf);
         let points: Vec<DVec3> = file.points.iter().map(|&p| frame.vector_to_gltf(p.into())).collect();
         let scaled = |t: f64| t / shape.time_scale;
-        let times: Option<Vec<f64>> = file.times.as_ref().map(|times| times.iter().copied().map(scaled).collect());
+        let times: Option<Vec<f64>> =
+            file.times.as_ref().map(|times| times.iter().copied().map(scaled).collect());
         let unsaid = file.times.is_none() && shape.speed.is_none();
         let duration = file.duration.map(scaled).or(rest.filter(|_| unsaid));
         let options = path::Options {
@@ -325,9 +341,10 @@ impl Way {
             file.orientations.iter().map(|given| given.map(|q| frame.rotation_to_gltf(q))).collect();
         let model = orient::model_frame(shape.model_forward, shape.model_up)?;
         let on_clock = |times: &[f64]| -> Vec<f64> { times.iter().map(|t| start + t).collect() };
-        let keys = orient::keyed(&path, &given, shape.level).into_iter().map(|q| q * model).collect();
-        let keyed = (on_clock(path.key_times()), keys);
-        let knots = merged(path.key_times().iter().chain(path.jumps()).chain(path.corners()).map(|t| start + t));
+        let keys = orient::keyed(&path, &given, shape.level).into_iter().map(|q| q * model);
+        let keyed = apart(on_clock(path.key_times()).into_iter().zip(keys));
+        let knots =
+            merged(path.key_times().iter().chain(path.jumps()).chain(path.corners()).map(|t| start + t));
         let any_given = given.iter().any(Option::is_some);
         Ok(Way { path, start, keyed, any_given, model, knots })
     }
@@ -372,6 +389,10 @@ impl Travel for &Way {
             return 0.0;
         }
         self.path.acceleration_bound(from - self.start, to - self.start)
+    }
+
+    fn speed_bound(&self, from: f64, to: f64) -> f64 {
+        self.path.speed_bound(from - self.start, to - self.start)
     }
 
     fn knots(&self) -> &[f64] {

@@ -8,22 +8,23 @@ use serde::Serialize;
 
 use crate::asset::play::{Channel, Clip, Interpolation, Keys, Property, at_key, between, slerp};
 use crate::asset::{Asset, Error};
+use gltf::json::Node;
 
 /// Where between two samples the file is compared, as parts of the interval.
 const BETWEEN: [f64; 3] = [0.25, 0.5, 0.75];
 
-/// The largest angle at some kind of time.
+/// The largest difference at some kind of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Largest {
-    /// The angle between file and curve, degrees.
-    pub degrees: f64,
+    /// The angle between file and curve, degrees, or their distance, units.
+    pub off: f64,
     /// When, seconds.
     pub time: f64,
     /// How many times were compared.
     pub compared: u64,
 }
 
-/// How far a node's rotation strays from a curve.
+/// How far a node's rotation or place strays from a curve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Difference {
     /// At the input's keys.
@@ -35,19 +36,19 @@ pub struct Difference {
 }
 
 impl Largest {
-    fn note(&mut self, degrees: f64, time: f64) {
+    fn note(&mut self, off: f64, time: f64) {
         self.compared += 1;
-        if degrees > self.degrees || self.compared == 1 {
-            *self = Largest { degrees, time, ..*self };
+        if off > self.off || self.compared == 1 {
+            *self = Largest { off, time, ..*self };
         }
     }
 }
 
 impl Difference {
-    /// The largest angle of all.
+    /// The largest of all.
     pub fn largest(&self) -> Largest {
         let [first, rest @ ..] = [self.keys, self.samples, self.between];
-        rest.into_iter().fold(first, |a, b| if b.degrees > a.degrees { b } else { a })
+        rest.into_iter().fold(first, |a, b| if b.off > a.off { b } else { a })
     }
 }
 
@@ -63,11 +64,41 @@ pub fn rotation(
     keys: &[f64],
     curve: &dyn Fn(f64) -> [f64; 4],
 ) -> Result<Difference, Error> {
-    let channel =
-        clip.channels.iter().find(|channel| channel.node == node && channel.property == Property::Rotation);
-    match channel {
-        Some(channel) => played(asset, channel, keys, curve),
-        None => resting(asset, node, keys, curve),
+    let resting = |node: &Node| node.rotation.unwrap_or_default().0.map(f64::from).to_vec();
+    let off = |value: &[f64], t: f64| degrees(four(value), curve(t));
+    property(asset, clip, (node, Property::Rotation), keys, &resting, &off)
+}
+
+/// Compares the translation of `node` in `clip` with `curve`, as [`rotation`] does.
+pub fn translation(
+    asset: &mut Asset,
+    clip: &Clip,
+    node: usize,
+    keys: &[f64],
+    curve: &dyn Fn(f64) -> [f64; 3],
+) -> Result<Difference, Error> {
+    let resting = |node: &Node| node.translation.unwrap_or_default().map(f64::from).to_vec();
+    let off = |value: &[f64], t: f64| {
+        let part = |i: usize| value.get(i).copied().unwrap_or(f64::NAN) - curve(t)[i];
+        part(0).hypot(part(1)).hypot(part(2))
+    };
+    property(asset, clip, (node, Property::Translation), keys, &resting, &off)
+}
+
+/// Compares what a clip does to a property, or what rests where it does nothing.
+fn property(
+    asset: &mut Asset,
+    clip: &Clip,
+    (node, property): (usize, Property),
+    keys: &[f64],
+    resting: &dyn Fn(&Node) -> Vec<f64>,
+    off: &dyn Fn(&[f64], f64) -> f64,
+) -> Result<Difference, Error> {
+    let channel = clip.channels.iter().find(|channel| channel.node == node && channel.property == property);
+    match (channel, asset.root().nodes.get(node)) {
+        (Some(channel), _) => played(asset, channel, keys, off),
+        (None, Some(stored)) => Ok(rested(&resting(stored), keys, off)),
+        (None, None) => Err(Error::data(format!("/nodes/{node}"), "there is no such node")),
     }
 }
 
@@ -81,7 +112,7 @@ fn played(
     asset: &mut Asset,
     channel: &Channel,
     keys: &[f64],
-    curve: &dyn Fn(f64) -> [f64; 4],
+    off: &dyn Fn(&[f64], f64) -> f64,
 ) -> Result<Difference, Error> {
     let mut difference = Difference::default();
     let mut keys = keys.iter().copied().peekable();
@@ -92,65 +123,57 @@ fn played(
         for (&time, stored) in block.times.iter().zip(values) {
             let sample =
                 Sample { time: f64::from(time), stored: stored.iter().copied().map(f64::from).collect() };
-            let value = four(at_key(channel, &sample.stored));
-            difference.samples.note(degrees(value, curve(sample.time)), sample.time);
+            let value = at_key(channel, &sample.stored).to_vec();
+            difference.samples.note(off(&value, sample.time), sample.time);
             // Keys up to this sample: before the first it holds.
             while let Some(key) = keys.next_if(|&key| key <= sample.time) {
                 let got = match &previous {
                     Some(previous) if key < sample.time => at(channel, previous, &sample, key),
-                    _ => value,
+                    _ => value.clone(),
                 };
-                difference.keys.note(degrees(got, curve(key)), key);
+                difference.keys.note(off(&got, key), key);
             }
             if let Some(previous) = &previous {
                 for u in BETWEEN {
                     let time = previous.time + u * (sample.time - previous.time);
                     let got = at(channel, previous, &sample, time);
-                    difference.between.note(degrees(got, curve(time)), time);
+                    difference.between.note(off(&got, time), time);
                 }
             }
             previous = Some(sample);
         }
     }
     if let Some(last) = previous {
-        let value = four(at_key(channel, &last.stored));
+        let value = at_key(channel, &last.stored).to_vec();
         for key in keys {
-            difference.keys.note(degrees(value, curve(key)), key);
+            difference.keys.note(off(&value, key), key);
         }
     }
     Ok(difference)
 }
 
-/// The channel's rotation at a time between two neighbouring keys.
-fn at(channel: &Channel, from: &Sample, to: &Sample, time: f64) -> [f64; 4] {
+/// The channel's value at a time between two neighbouring keys.
+fn at(channel: &Channel, from: &Sample, to: &Sample, time: f64) -> Vec<f64> {
     let length = to.time - from.time;
     let u = (time - from.time) / length;
-    match channel.interpolation {
-        Interpolation::Linear => slerp(four(&from.stored), four(&to.stored), u),
-        _ => four(&between(channel, &from.stored, &to.stored, u, length)),
+    match (channel.interpolation, &channel.property) {
+        (Interpolation::Linear, Property::Rotation) => {
+            slerp(four(&from.stored), four(&to.stored), u).to_vec()
+        }
+        _ => between(channel, &from.stored, &to.stored, u, length),
     }
 }
 
-fn resting(
-    asset: &Asset,
-    node: usize,
-    keys: &[f64],
-    curve: &dyn Fn(f64) -> [f64; 4],
-) -> Result<Difference, Error> {
-    let Some(stored) = asset.root().nodes.get(node) else {
-        let problem = "there is no such node";
-        return Err(Error::data(format!("/nodes/{node}"), problem));
-    };
-    let rotation = stored.rotation.unwrap_or_default().0.map(f64::from);
+fn rested(value: &[f64], keys: &[f64], off: &dyn Fn(&[f64], f64) -> f64) -> Difference {
     let mut difference = Difference::default();
     for (i, &key) in keys.iter().enumerate() {
-        difference.keys.note(degrees(rotation, curve(key)), key);
+        difference.keys.note(off(value, key), key);
         for u in keys.get(i + 1).into_iter().flat_map(|_| BETWEEN) {
             let time = key + u * (keys[i + 1] - key);
-            difference.between.note(degrees(rotation, curve(time)), time);
+            difference.between.note(off(value, time), time);
         }
     }
-    Ok(difference)
+    difference
 }
 
 fn four(q: &[f64]) -> [f64; 4] {

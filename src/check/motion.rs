@@ -8,9 +8,12 @@ use super::{Code, Report};
 use crate::asset::play::Clip;
 use crate::asset::{self, Asset};
 use crate::clip::Body;
-use crate::curve::{Ends, Motion, NotClosed, Scheme};
+use crate::curve::{Ends, Scheme};
 use crate::math::Quat;
-use crate::read::{Keyframes, Order};
+use crate::moves::{self, Ground, Inputs, Move, Mover, Orient, Shape};
+use crate::orient::{Axis, Frame, Level};
+use crate::path::{Ease, PathEnds, Timing};
+use crate::read::Order;
 use serde::{Deserialize, Serialize};
 
 /// What a user may say of a file that does not say it itself, or otherwise.
@@ -22,6 +25,8 @@ pub struct Given {
     pub ends: Option<Ends>,
     /// The largest angle allowed, degrees.
     pub max_error: Option<f64>,
+    /// The largest distance allowed, units.
+    pub max_distance: Option<f64>,
 }
 
 /// How far one clip is from its curve.
@@ -34,7 +39,7 @@ pub struct ClipMotion {
     pub scheme: &'static str,
     /// The ends of the curve.
     pub ends: &'static str,
-    /// By box.
+    /// By box, and of the root where it moves.
     pub boxes: Vec<NodeMotion>,
 }
 
@@ -44,9 +49,11 @@ pub struct ClipMotion {
 pub struct NodeMotion {
     /// Name of the node.
     pub node: String,
-    /// The largest angle allowed, degrees, if there is a limit.
+    /// `rotation`, measured in degrees, or `translation`, in units.
+    pub property: &'static str,
+    /// The largest angle or distance allowed, if there is a limit.
     pub limit: Option<f64>,
-    /// Angles at keys, at samples, and between samples.
+    /// At keys, at samples, and between samples.
     #[serde(flatten)]
     pub difference: Difference,
 }
@@ -64,9 +71,9 @@ pub enum Error {
     /// A clip says a scheme or ends that this version does not know.
     #[error("clip {0} says that it was made by {1}, which this version does not know")]
     Unknown(String, String),
-    /// The input's ends do not meet.
+    /// The inputs make no motion by what the file says.
     #[error(transparent)]
-    NotClosed(#[from] NotClosed),
+    Moves(#[from] moves::Error),
     /// The file cannot be read.
     #[error(transparent)]
     Asset(#[from] asset::Error),
@@ -75,18 +82,53 @@ pub enum Error {
 /// What is compared beyond a stored bound: float32 and the arithmetic of players.
 const MARGIN: f64 = 1e-3;
 
-/// What a clip says of itself.
+/// What a clip says of itself; what it does not say is as usual.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(rename_all = "camelCase")]
+#[serde(rename_all = "camelCase", default)]
 struct Recipe {
     scheme: String,
     ends: String,
-    #[serde(default)]
     quat_order: Option<String>,
-    #[serde(default)]
+    time_scale: Option<f64>,
+    orient: Option<String>,
+    path_ends: Option<String>,
+    timing: Option<String>,
+    ease: Option<String>,
+    speed: Option<f64>,
+    frame: Option<String>,
+    bank: f64,
+    level_start: usize,
+    level_end: usize,
+    model_forward: String,
+    model_up: String,
     inputs: Vec<Input>,
-    #[serde(default)]
     deviation_degrees: Vec<Option<f64>>,
+    deviation_units: Option<f64>,
+}
+
+impl Default for Recipe {
+    fn default() -> Recipe {
+        Recipe {
+            scheme: String::new(),
+            ends: "natural".into(),
+            quat_order: None,
+            time_scale: None,
+            orient: None,
+            path_ends: None,
+            timing: None,
+            ease: None,
+            speed: None,
+            frame: None,
+            bank: 0.0,
+            level_start: 0,
+            level_end: 0,
+            model_forward: "Z".into(),
+            model_up: "Y".into(),
+            inputs: Vec::new(),
+            deviation_degrees: Vec::new(),
+            deviation_units: None,
+        }
+    }
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -95,81 +137,150 @@ struct Input {
     blake3: String,
 }
 
+impl Recipe {
+    /// What shapes the motion, or the word that this version does not know.
+    fn shape(&self) -> Result<Shape, String> {
+        fn known<T>(word: &str, from_name: fn(&str) -> Option<T>) -> Result<T, String> {
+            from_name(word).ok_or_else(|| word.to_owned())
+        }
+        fn said<T>(word: &Option<String>, from_name: fn(&str) -> Option<T>) -> Result<Option<T>, String> {
+            word.as_ref().map(|word| known(word, from_name)).transpose()
+        }
+        Ok(Shape {
+            ends: known(&self.ends, Ends::from_name)?,
+            path_ends: said(&self.path_ends, PathEnds::from_name)?.unwrap_or_default(),
+            timing: said(&self.timing, Timing::from_name)?,
+            ease: said(&self.ease, Ease::from_name)?.unwrap_or_default(),
+            speed: self.speed,
+            time_scale: self.time_scale.unwrap_or(1.0),
+            frame: said(&self.frame, Frame::from_name)?,
+            orient: said(&self.orient, Orient::from_name)?,
+            bank: self.bank,
+            level: Level { start: self.level_start, end: self.level_end },
+            model_forward: known(&self.model_forward, Axis::from_name)?,
+            model_up: known(&self.model_up, Axis::from_name)?,
+        })
+    }
+}
+
 /// The order of quaternions' parts in which the file's input was read, where it says so.
 pub fn quat_order(asset: &Asset) -> Option<Order> {
     let recipes = (0..asset.root().animations.len()).filter_map(|i| recipe(asset, i));
     recipes.filter_map(|recipe| Order::from_name(recipe.quat_order.as_deref()?)).next()
 }
 
+/// Whose axes the file's inputs are in, where a flag said so.
+pub fn frame(asset: &Asset) -> Option<Frame> {
+    let recipes = (0..asset.root().animations.len()).filter_map(|i| recipe(asset, i));
+    recipes.filter_map(|recipe| Frame::from_name(recipe.frame.as_deref()?)).next()
+}
+
 fn recipe(asset: &Asset, animation: usize) -> Option<Recipe> {
-    serde_json::from_str(asset.root().animations.get(animation)?.extras.as_ref()?.get()).ok()
+    let recipe: Recipe =
+        serde_json::from_str(asset.root().animations.get(animation)?.extras.as_ref()?.get()).ok()?;
+    (!recipe.scheme.is_empty()).then_some(recipe)
 }
 
 /// Compares every clip of the file that has a curve, and adds what is amiss to `report`.
 pub fn compare(
     asset: &mut Asset,
-    keyframes: &Keyframes,
+    inputs: &Inputs,
     given: Given,
     report: &mut Report,
 ) -> Result<Vec<ClipMotion>, Error> {
     let mut compared = Vec::new();
     for clip in asset.clips() {
         let recipe = recipe(asset, clip.animation);
-        let Some((scheme, ends)) = curve_of(&clip, recipe.as_ref(), given)? else { continue };
-        if scheme != Scheme::Slerp {
-            ends.accept(&keyframes.clip)?;
-        }
+        let Some((scheme, shape)) = curve_of(&clip, recipe.as_ref(), given)? else { continue };
+        let ground = Ground::new(inputs, shape, &[scheme])?;
         if let Some(recipe) = &recipe {
-            note_changed_input(&clip, recipe, keyframes, report);
+            note_changed_inputs(&clip, recipe, inputs, report);
         }
-        let stored = recipe.map(|recipe| recipe.deviation_degrees).unwrap_or_default();
-        let limit = |track: usize| {
-            given.max_error.or(stored.get(track).copied().flatten().map(|bound| bound + MARGIN))
-        };
+        let mut limits = Limits::new(recipe.as_ref(), given);
         let mut boxes = Vec::new();
-        for track in 0..keyframes.clip.tracks.len() {
-            let motion = Motion::new(&keyframes.clip.times, &keyframes.clip.tracks[track], scheme, ends);
-            boxes.extend(node(asset, &clip, track, keyframes, &motion, limit(track), report)?);
+        for (mover, a_move) in ground.moves(scheme) {
+            let limit = limits.next(&a_move);
+            let keys = ground.knots();
+            boxes.extend(node(asset, &clip, &node_name(mover, inputs), keys, &a_move, limit, report)?);
         }
-        compared.push(ClipMotion { clip: name(&clip), scheme: scheme.name(), ends: ends.name(), boxes });
+        let (scheme, ends) = (scheme.name(), shape.ends.name());
+        compared.push(ClipMotion { clip: name(&clip), scheme, ends, boxes });
     }
     if compared.is_empty() { Err(Error::NoRecipe) } else { Ok(compared) }
 }
 
+/// What each move may be off, in their order: what the user says, else what the file
+/// states, and a margin.
+struct Limits {
+    given: Given,
+    degrees: std::vec::IntoIter<Option<f64>>,
+    units: Option<f64>,
+}
+
+impl Limits {
+    fn new(recipe: Option<&Recipe>, given: Given) -> Limits {
+        let degrees = recipe.map(|recipe| recipe.deviation_degrees.clone()).unwrap_or_default();
+        Limits {
+            given,
+            degrees: degrees.into_iter(),
+            units: recipe.and_then(|recipe| recipe.deviation_units),
+        }
+    }
+
+    fn next(&mut self, a_move: &Move) -> Option<f64> {
+        match a_move {
+            // float32 players lose a few of its steps.
+            Move::Travel(_) => {
+                self.given.max_distance.or(self.units.map(|bound| bound * (1.0 + MARGIN) + 1e-6))
+            }
+            Move::Keys(_) | Move::Attitude(_) => {
+                let stored = self.degrees.next().flatten();
+                self.given.max_error.or(stored.map(|bound| bound + MARGIN))
+            }
+        }
+    }
+}
+
 /// The curve that a clip should follow: what the user says, else what the file says. A
 /// clip that is named after another scheme than the given one is not meant.
-fn curve_of(clip: &Clip, recipe: Option<&Recipe>, given: Given) -> Result<Option<(Scheme, Ends)>, Error> {
-    let unknown = |word: &String| Error::Unknown(name(clip), word.clone());
+fn curve_of(clip: &Clip, recipe: Option<&Recipe>, given: Given) -> Result<Option<(Scheme, Shape)>, Error> {
+    let unknown = |word: &str| Error::Unknown(name(clip), word.to_owned());
     let said = match recipe {
-        Some(Recipe { scheme, ends, .. }) => {
-            let scheme = Scheme::from_name(scheme).ok_or_else(|| unknown(scheme))?;
-            Some((scheme, Ends::from_name(ends).ok_or_else(|| unknown(ends))?))
-        }
+        Some(recipe) => Some(Scheme::from_name(&recipe.scheme).ok_or_else(|| unknown(&recipe.scheme))?),
         None => None,
     };
-    let Some(scheme) = given.scheme.or(said.map(|said| said.0)) else { return Ok(None) };
-    let ends = given.ends.or(said.map(|said| said.1)).unwrap_or_default();
+    let Some(scheme) = given.scheme.or(said) else { return Ok(None) };
+    let shape = recipe.map_or_else(|| Ok(Shape::default()), Recipe::shape).map_err(|word| unknown(&word))?;
+    let shape = Shape { ends: given.ends.unwrap_or(shape.ends), ..shape };
     let suffixed = |scheme: &Scheme| name(clip).ends_with(&format!("-{}", scheme.name()));
     let named_after = Scheme::ALL.iter().copied().filter(suffixed).max_by_key(|scheme| scheme.name().len());
     let meant = said.is_some() || named_after.is_none_or(|named| named == scheme);
-    Ok(meant.then_some((scheme, ends)))
+    Ok(meant.then_some((scheme, shape)))
 }
 
 fn name(clip: &Clip) -> String {
     clip.name.clone().unwrap_or_else(|| format!("animation {}", clip.animation))
 }
 
-fn note_changed_input(clip: &Clip, recipe: &Recipe, keyframes: &Keyframes, report: &mut Report) {
-    if let [input] = recipe.inputs.as_slice()
-        && input.blake3 != keyframes.hash
-    {
+/// The name of the node that a move belongs to.
+fn node_name(mover: Mover, inputs: &Inputs) -> String {
+    match (mover, &inputs.keyframes) {
+        (Mover::Root, _) => "root".to_owned(),
+        (Mover::Track(_), Some(keyframes)) if keyframes.clip.body == Body::Free => "body".to_owned(),
+        (Mover::Track(track), _) => format!("box{}", track + 1),
+    }
+}
+
+fn note_changed_inputs(clip: &Clip, recipe: &Recipe, inputs: &Inputs, report: &mut Report) {
+    let hashes = inputs.keyframes.as_ref().map(|k| &k.hash).into_iter();
+    let hashes = hashes.chain(inputs.path.as_ref().map(|path| &path.hash));
+    for (input, hash) in recipe.inputs.iter().zip(hashes).filter(|(input, hash)| input.blake3 != **hash) {
         let message = format!(
             "clip {} was made from an input ({}) whose BLAKE3 hash begins with {:.12}; this one's begins with \
-             {:.12}; convert again if the new input is the one that is meant",
+             {hash:.12}; convert again if the new input is the one that is meant",
             name(clip),
             input.name,
-            input.blake3,
-            keyframes.hash
+            input.blake3
         );
         report.add(Code::InputChanged, format!("/animations/{}/extras", clip.animation), message);
     }
@@ -178,38 +289,46 @@ fn note_changed_input(clip: &Clip, recipe: &Recipe, keyframes: &Keyframes, repor
 fn node(
     asset: &mut Asset,
     clip: &Clip,
-    track: usize,
-    keyframes: &Keyframes,
-    motion: &Motion,
+    wanted: &str,
+    keys: &[f64],
+    a_move: &Move,
     limit: Option<f64>,
     report: &mut Report,
 ) -> Result<Option<NodeMotion>, Error> {
-    let wanted = match keyframes.clip.body {
-        Body::Chain { .. } => format!("box{}", track + 1),
-        Body::Free => "body".to_owned(),
-    };
     let place = format!("/animations/{}", clip.animation);
-    let found = asset.root().nodes.iter().position(|node| node.name.as_deref() == Some(&wanted));
+    let found = asset.root().nodes.iter().position(|node| node.name.as_deref() == Some(wanted));
     let Some(index) = found else {
-        let message = format!("expected a node named {wanted} for the input's box {}, found none", track + 1);
+        let message = format!("expected a node named {wanted}, which the input moves, found none");
         report.add(Code::MotionDiffers, place, message);
         return Ok(None);
     };
     // The file ends at a float32 time: keys beyond it are compared there.
-    let keys: Vec<f64> = keyframes.clip.times.iter().map(|&t| t.min(clip.duration)).collect();
-    let curve = |t: f64| Quat::to_xyzw(motion.at(t));
-    let difference = against::rotation(asset, clip, index, &keys, &curve)?;
+    let keys: Vec<f64> = keys.iter().map(|&t| t.min(clip.duration)).collect();
+    let (property, unit, difference) = match a_move {
+        Move::Keys(motion) => {
+            let curve = |t: f64| Quat::to_xyzw(motion.at(t));
+            ("rotation", "°", against::rotation(asset, clip, index, &keys, &curve)?)
+        }
+        Move::Attitude(at) => {
+            let curve = |t: f64| Quat::to_xyzw(at(t));
+            ("rotation", "°", against::rotation(asset, clip, index, &keys, &curve)?)
+        }
+        Move::Travel(travel) => {
+            let curve = |t: f64| travel.at(t).to_array();
+            ("translation", " units", against::translation(asset, clip, index, &keys, &curve)?)
+        }
+    };
     let worst = difference.largest();
-    // Written so that an angle that is no number exceeds every limit.
-    if let Some(limit) = limit.filter(|&limit| worst.degrees.is_nan() || worst.degrees > limit) {
+    // Written so that a value that is no number exceeds every limit.
+    if let Some(limit) = limit.filter(|&limit| worst.off.is_nan() || worst.off > limit) {
         let message = format!(
-            "clip {}, node {wanted}: playback is up to {:.6}° off the curve, at {:.6} s; at most {limit:.6}° is \
-             allowed",
+            "clip {}, {property} of node {wanted}: playback is up to {:.6}{unit} off the curve, at {:.6} s; at \
+             most {limit:.6}{unit} is allowed",
             name(clip),
-            worst.degrees,
+            worst.off,
             worst.time
         );
         report.add(Code::MotionDiffers, place, message);
     }
-    Ok(Some(NodeMotion { node: wanted, limit, difference }))
+    Ok(Some(NodeMotion { node: wanted.to_owned(), property, limit, difference }))
 }

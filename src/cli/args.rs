@@ -3,6 +3,9 @@
 use clap::builder::{PossibleValue, TypedValueParser, ValueParser};
 use clap::{Args, Parser, Subcommand, ValueHint};
 use dat2glb::curve::{Ends, Scheme};
+use dat2glb::moves::{Orient, Shape};
+use dat2glb::orient::{Axis, Frame, Level};
+use dat2glb::path::{Ease, PathEnds, Timing};
 use dat2glb::read::Order;
 use dat2glb::sample::Fps;
 use std::ffi::{OsStr, OsString};
@@ -49,7 +52,7 @@ pub(crate) enum Command {
 
 #[derive(Args, Debug)]
 pub(crate) struct Convert {
-    /// Keyframe files (.dat); `-` reads standard input
+    /// Keyframes or paths (.dat); `-` reads standard input
     #[arg(required = true, value_name = "IN", value_hint = ValueHint::FilePath)]
     pub(crate) inputs: Vec<PathBuf>,
     /// The file to write, .glb or .gltf (with a .bin beside it); `-` writes a .glb to
@@ -66,11 +69,22 @@ pub(crate) struct Convert {
     /// Samples per second: 60, 23.976, 30000/1001
     #[arg(long, default_value = "60")]
     pub(crate) fps: Fps,
+    /// Everything so many times as fast
+    #[arg(long, value_name = "F", default_value = "1", value_parser = positive)]
+    pub(crate) time_scale: f64,
+    /// Whose x, y and z the numbers of a path or of Euler angles are; overrides the header
+    #[arg(long, value_parser = frame())]
+    pub(crate) frame: Option<Frame>,
     /// Leave the key times out: an even grid of samples, which may miss the keys
     #[arg(long)]
     pub(crate) no_key_times: bool,
     #[command(flatten)]
     pub(crate) order: OrderFlag,
+    /// Send what the inputs turn along this path
+    #[arg(long, value_name = "PATH.dat", value_hint = ValueHint::FilePath)]
+    pub(crate) path: Option<PathBuf>,
+    #[command(flatten, next_help_heading = "Paths")]
+    pub(crate) along: Along,
     /// Draw a picture of the result too; for several inputs a folder
     #[cfg(feature = "render")]
     #[arg(long, value_name = "OUT.png", value_hint = ValueHint::FilePath)]
@@ -105,13 +119,17 @@ pub(crate) struct Check {
     /// Warnings fail too
     #[arg(long)]
     pub(crate) strict: bool,
-    /// Compare the motion with the curve through the keys of this input
+    /// Compare the motion with the curve through the keys of this input; said twice where
+    /// the file was made of keyframes and a path
     #[arg(long, value_name = "IN.dat", value_hint = ValueHint::FilePath)]
-    pub(crate) against: Option<PathBuf>,
+    pub(crate) against: Vec<PathBuf>,
     /// The largest angle, degrees, that playback may be off the curve; without it, what
     /// convert stored in the file
     #[arg(long, value_name = "DEG", requires = "against", value_parser = degrees)]
     pub(crate) max_error: Option<f64>,
+    /// The largest distance, units, that playback may be off the path
+    #[arg(long, value_name = "UNITS", requires = "against", value_parser = degrees)]
+    pub(crate) max_distance: Option<f64>,
     /// The scheme of a file that does not say it itself
     #[arg(long, value_name = "NAME", requires = "against", value_parser = scheme())]
     pub(crate) scheme: Option<Scheme>,
@@ -162,7 +180,7 @@ pub(crate) struct Thumbnail {
 
 #[derive(Args, Debug)]
 pub(crate) struct Inspect {
-    /// The file: keyframes, .glb, .gltf; `-` reads keyframes from standard input
+    /// The file: keyframes, a path, .glb, .gltf; `-` reads standard input
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) file: PathBuf,
     #[command(flatten)]
@@ -186,6 +204,12 @@ pub(crate) enum Kind {
     Chain,
     /// One free body that tumbles, in the order x y z w
     Body,
+    /// Key points of a flight that lands
+    Flight,
+    /// Control points of a Bézier path
+    Bezier,
+    /// Roll, pitch and yaw in degrees
+    Euler,
 }
 
 #[derive(Args, Debug)]
@@ -216,6 +240,113 @@ fn renderer_named(name: &str) -> Option<dat2glb::render::Renderer> {
         "cpu" => Some(Renderer::Cpu),
         _ => None,
     }
+}
+
+/// How to go along a path, and how to look on the way.
+#[derive(Args, Debug)]
+pub(crate) struct Along {
+    /// How time is shared out along the path; without it the kind's own, or the file's
+    #[arg(long, value_parser = named(Timing::from_name, vec![
+        ("uniform", "every segment takes equally long"),
+        ("chord", "a segment's time is proportional to the distance between its ends"),
+        ("constant-speed", "equal distances in equal times"),
+        ("times", "from the file"),
+    ]))]
+    timing: Option<Timing>,
+    /// Rest at the path's ends, under constant speed
+    #[arg(long, default_value = "none", value_parser = named(Ease::from_name, vec![
+        ("none", ""), ("in", "at the start"), ("out", "at the end"), ("in-out", "at both"),
+    ]))]
+    ease: Ease,
+    /// Mean speed, units a second: the duration is the length divided by it
+    #[arg(long, value_name = "V", value_parser = positive)]
+    speed: Option<f64>,
+    /// What the path does at its ends
+    #[arg(long, default_value = "natural", value_parser = named(PathEnds::from_name, vec![
+        ("natural", "starts and stops without acceleration"),
+        ("clamped", "starts and stops at rest"),
+        ("repeat", "the end point counts twice"),
+        ("closed", "the end runs into the start"),
+        ("periodic", "another word for closed"),
+    ]))]
+    path_ends: PathEnds,
+    /// How the object looks on its way; without it upright where the path alone moves it,
+    /// none where rotation keys turn it, keyed where the path gives orientations
+    #[arg(long, value_parser = named(Orient::from_name, vec![
+        ("none", "as it stands"),
+        ("keyed", "turned from chord to chord at key points; the scheme runs between"),
+        ("tangent", "along the way, with the least twist"),
+        ("upright", "along the way, with its head up"),
+    ]))]
+    orient: Option<Orient>,
+    /// How far it leans into the sharpest turn; upright only
+    #[arg(
+        long,
+        value_name = "DEG",
+        default_value = "0",
+        allow_negative_numbers = true,
+        hide_default_value = true
+    )]
+    bank: f64,
+    /// The last N orientation keys have no pitch and no roll: a landing
+    #[arg(long, value_name = "N", default_value = "0", hide_default_value = true)]
+    level_end: usize,
+    /// The first N orientation keys have no pitch and no roll
+    #[arg(long, value_name = "N", default_value = "0", hide_default_value = true)]
+    level_start: usize,
+    /// Where the model's nose points
+    #[arg(long, value_name = "AXIS", default_value = "Z", allow_hyphen_values = true, value_parser = axis())]
+    model_forward: Axis,
+    /// Where the model's top points
+    #[arg(long, value_name = "AXIS", default_value = "Y", allow_hyphen_values = true, value_parser = axis())]
+    model_up: Axis,
+}
+
+impl Along {
+    /// All that shapes the motion; `None` where only a path could be meant and there is
+    /// none.
+    pub(crate) fn shape(&self, ends: Ends, time_scale: f64, frame: Option<Frame>) -> Shape {
+        Shape {
+            ends,
+            path_ends: self.path_ends,
+            timing: self.timing,
+            ease: self.ease,
+            speed: self.speed,
+            time_scale,
+            frame,
+            orient: self.orient,
+            bank: self.bank,
+            level: Level { start: self.level_start, end: self.level_end },
+            model_forward: self.model_forward,
+            model_up: self.model_up,
+        }
+    }
+
+    /// Whether anything is asked for that only a path can have.
+    pub(crate) fn is_asked(&self) -> bool {
+        let plain = Shape::default();
+        self.shape(plain.ends, plain.time_scale, plain.frame) != plain
+    }
+}
+
+fn axis() -> ValueParser {
+    named(Axis::from_name, Axis::ALL.iter().map(|axis| (axis.name(), "")).collect())
+}
+
+fn frame() -> ValueParser {
+    named(
+        Frame::from_name,
+        vec![
+            ("gltf", "x left, y up, z forward"),
+            ("frd", "aerospace: x forward, y right, z down"),
+            ("flu", "ROS: x forward, y left, z up"),
+        ],
+    )
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "expected a number".to_owned())?;
+    if value > 0.0 && value.is_finite() { Ok(value) } else { Err("expected a number above 0".to_owned()) }
 }
 
 /// One word of `--scheme`: a scheme, or all of them.
@@ -264,8 +395,8 @@ fn ends() -> ValueParser {
 }
 
 fn degrees(text: &str) -> Result<f64, String> {
-    let value: f64 = text.parse().map_err(|_| "expected an angle in degrees".to_owned())?;
-    if value >= 0.0 { Ok(value) } else { Err("expected an angle of 0 degrees or more".to_owned()) }
+    let value: f64 = text.parse().map_err(|_| "expected degrees or units, a number".to_owned())?;
+    if value >= 0.0 { Ok(value) } else { Err("expected degrees or units, 0 or more".to_owned()) }
 }
 
 #[cfg(feature = "render")]

@@ -54,17 +54,22 @@ fn compare(
     options: &Check,
     report: &mut Report,
 ) -> Result<Vec<ClipMotion>, Failure> {
-    let Some(input) = &options.against else { return Ok(Vec::new()) };
+    if options.against.is_empty() {
+        return Ok(Vec::new());
+    }
     let order = options.order.order.or(motion::quat_order(asset));
-    let keyframes = files::keyframes(input, order)?;
-    let given = Given { scheme: options.scheme, ends: options.ends, max_error: options.max_error };
-    motion::compare(asset, &keyframes, given, report).map_err(|error| {
-        let message = format!("{}: {error}", file.display());
-        match error {
-            motion::Error::NoRecipe => Failure::usage(message),
-            _ => Failure::refused(message),
-        }
-    })
+    let paths: Vec<&Path> = options.against.iter().map(|path| path.as_path()).collect();
+    let inputs = files::inputs(&paths, order, motion::frame(asset))?;
+    let Check { scheme, ends, max_error, max_distance, .. } = *options;
+    motion::compare(asset, &inputs, Given { scheme, ends, max_error, max_distance }, report).map_err(
+        |error| {
+            let message = format!("{}: {error}", file.display());
+            match error {
+                motion::Error::NoRecipe => Failure::usage(message),
+                _ => Failure::refused(message),
+            }
+        },
+    )
 }
 
 #[cfg(feature = "render")]
@@ -103,7 +108,7 @@ fn print(file: &Path, options: &Check, report: &Report, motions: &[ClipMotion]) 
     if options.json {
         let mut value = report.to_json();
         value["file"] = name.into();
-        if options.against.is_some() {
+        if !options.against.is_empty() {
             value["motion"] = serde_json::to_value(motions).expect("plain data becomes JSON");
         }
         return writeln!(out, "{value}");
@@ -111,16 +116,20 @@ fn print(file: &Path, options: &Check, report: &Report, motions: &[ClipMotion]) 
     for clip in motions {
         writeln!(out, "{name}: clip {} against {} with {} ends:", clip.clip, clip.scheme, clip.ends)?;
         for motion in &clip.boxes {
-            let limit = motion.limit.map_or(String::new(), |limit| format!(" (at most {limit:.6}° allowed)"));
+            let unit = if motion.property == "rotation" { "°" } else { " units" };
+            let limit =
+                motion.limit.map_or(String::new(), |limit| format!(" (at most {limit:.6}{unit} allowed)"));
             let kinds = [
                 ("keys", motion.difference.keys),
                 ("samples", motion.difference.samples),
                 ("between", motion.difference.between),
             ];
-            let angles: Vec<String> = kinds
-                .map(|(kind, largest)| format!("{kind} {} at {:.3} s", angle(largest.degrees), largest.time))
+            let offs: Vec<String> = kinds
+                .map(|(kind, largest)| {
+                    format!("{kind} {} at {:.3} s", amount(largest.off, unit), largest.time)
+                })
                 .into();
-            writeln!(out, "{name}:   {}: {}{limit}", motion.node, angles.join(", "))?;
+            writeln!(out, "{name}:   {}{}: {}{limit}", motion.node, what(motion.property), offs.join(", "))?;
         }
     }
     write!(out, "{}", report.text(&name))?;
@@ -132,7 +141,12 @@ fn print(file: &Path, options: &Check, report: &Report, motions: &[ClipMotion]) 
     writeln!(out, "{name}: {errors}, {warnings}, {}", count(Severity::Info, "info"))
 }
 
-/// An angle for people: tiny ones by their order.
-fn angle(degrees: f64) -> String {
-    if degrees < 1e-3 { format!("{degrees:.1e}°") } else { format!("{degrees:.4}°") }
+/// An angle or a distance for people: tiny ones by their order.
+fn amount(off: f64, unit: &str) -> String {
+    if off < 1e-3 { format!("{off:.1e}{unit}") } else { format!("{off:.4}{unit}") }
+}
+
+/// Which property, where it is not the usual one.
+fn what(property: &str) -> String {
+    if property == "rotation" { String::new() } else { format!(" {property}") }
 }

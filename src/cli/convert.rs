@@ -2,13 +2,14 @@
 
 use super::args::Convert;
 use super::exit::{Exit, Failure};
-use super::files::{Beside, display_name, is_standard, keyframes};
+use super::files::{self, Beside, display_name, is_standard};
 use super::output::Output;
 use super::progress::Progress;
 use super::summary::Summary;
 use dat2glb::asset::{Asset, Resolve, Source};
 use dat2glb::check::{self, Report, Severity};
 use dat2glb::convert::{ClipFacts, Options, Plan};
+use dat2glb::moves::{Ground, Inputs};
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Cursor, Seek, Write};
@@ -122,21 +123,24 @@ fn check_ending(output: &Path) -> Result<(), Failure> {
 fn convert(job: &Job, options: &Convert) -> Result<(), Failure> {
     let started = Instant::now();
     let name = display_name(&job.input);
-    let keyframes = keyframes(&job.input, options.order.order)?;
-    let stem = stem(&job.input);
-    let input = match job.input.file_name() {
-        Some(file) if !is_standard(&job.input) => file.to_string_lossy().into_owned(),
-        _ => "stdin".to_owned(),
-    };
+    let paths: Vec<&Path> = std::iter::once(&job.input).chain(&options.path).map(PathBuf::as_path).collect();
+    let inputs = files::inputs(&paths, options.order.order, options.frame)?;
+    if inputs.path.is_none() && options.along.is_asked() {
+        return Err(Failure::usage(format!(
+            "{name}: options of a path are given, but no path: say --path PATH.dat"
+        )));
+    }
     let recipe = Options {
-        name: stem,
-        input,
+        name: stem(&job.input),
+        inputs: input_names(&inputs, &paths),
         schemes: options.schemes(),
-        ends: options.ends,
         fps: options.fps,
         key_times: !options.no_key_times,
     };
-    let plan = Plan::new(&keyframes, &name, &recipe).map_err(|error| Failure::refused(error.to_string()))?;
+    let shape = options.along.shape(options.ends, options.time_scale, options.frame);
+    let refused = |error: &dyn std::fmt::Display| Failure::refused(format!("{name}: {error}"));
+    let ground = Ground::new(&inputs, shape, &recipe.schemes).map_err(|error| refused(&error))?;
+    let plan = Plan::new(&ground, &name, &recipe).map_err(|error| Failure::refused(error.to_string()))?;
     let mut written =
         if is_gltf(&job.output) { gltf(job, &plan, options)? } else { glb(job, &plan, options)? };
     let thumbnail = draw(job, options, &mut written)?;
@@ -149,8 +153,23 @@ fn convert(job: &Job, options: &Convert) -> Result<(), Failure> {
     if is_gltf(&job.output) {
         remove_old_bins(&job.output, &bin_name);
     }
-    let summary = Summary::new(&name, &job.output, &keyframes, &facts, bytes, &warnings, started.elapsed());
+    let summary = Summary::new(&name, &job.output, &ground, &facts, bytes, &warnings, started.elapsed());
     summary.print(options.json, options.quiet)
+}
+
+/// The inputs' file names as the output keeps them: rotations, then path.
+fn input_names(inputs: &Inputs, paths: &[&Path]) -> Vec<String> {
+    let name = |path: &&Path| match path.file_name() {
+        Some(file) if !is_standard(path) => file.to_string_lossy().into_owned(),
+        _ => "stdin".to_owned(),
+    };
+    let mut names: Vec<String> = paths.iter().map(name).collect();
+    // A path may have been named first.
+    if names.len() == 2 && inputs.path.is_some() && inputs.keyframes.is_some() {
+        return names;
+    }
+    names.truncate(1);
+    names
 }
 
 /// What was written, and checked, but has no name yet.

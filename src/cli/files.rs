@@ -2,7 +2,9 @@
 
 use super::exit::Failure;
 use dat2glb::asset::{self, Asset, Resolve, Source};
-use dat2glb::read::{self, Keyframes, Order};
+use dat2glb::moves::{Inputs, euler_keys};
+use dat2glb::orient::Frame;
+use dat2glb::read::{self, Input, Order};
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
@@ -18,11 +20,32 @@ pub(super) fn is_standard(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Reads a keyframe file, or standard input.
-pub(super) fn keyframes(path: &Path, order: Option<Order>) -> Result<Keyframes, Failure> {
+/// Reads any kind of input, or standard input.
+pub(super) fn input(path: &Path, order: Option<Order>) -> Result<Input, Failure> {
     let input: Box<dyn Read + Send> =
         if is_standard(path) { Box::new(io::stdin()) } else { Box::new(open(path)?) };
-    read::keyframes(&display_name(path), input, order).map_err(|error| Failure::refused(error.to_string()))
+    read::input(&display_name(path), input, order).map_err(|error| Failure::refused(error.to_string()))
+}
+
+/// Puts together what some inputs hold: keyframes and a path, each at most once.
+pub(super) fn inputs(paths: &[&Path], order: Option<Order>, frame: Option<Frame>) -> Result<Inputs, Failure> {
+    let mut inputs = Inputs { keyframes: None, path: None };
+    for path in paths {
+        let name = display_name(path);
+        let twice = |what: &str| Failure::usage(format!("{name}: expected {what} only once"));
+        match input(path, order)? {
+            Input::Path(_) if inputs.path.is_some() => return Err(twice("a path")),
+            Input::Path(file) => inputs.path = Some(file),
+            _ if inputs.keyframes.is_some() => return Err(twice("rotations")),
+            Input::Keyframes(keyframes) => inputs.keyframes = Some(keyframes),
+            Input::Rotations(file) => {
+                let keys = euler_keys(file, frame);
+                inputs.keyframes = Some(keys.map_err(|error| Failure::refused(format!("{name}: {error}")))?);
+            }
+            _ => return Err(Failure::refused(format!("{name}: this kind of input cannot be converted"))),
+        }
+    }
+    Ok(inputs)
 }
 
 /// Opens an input file.

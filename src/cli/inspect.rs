@@ -4,6 +4,7 @@ use super::args::Inspect;
 use super::exit::{Exit, Failure};
 use super::files;
 use dat2glb::inspect;
+use dat2glb::read::Input;
 use serde::Serialize;
 use std::fmt::Display;
 use std::io::{self, Read, Write};
@@ -14,8 +15,12 @@ pub(super) fn run(options: &Inspect) -> Result<Exit, Failure> {
     if !files::is_standard(file) && is_gltf(file)? {
         return print(&inspect::gltf(&mut files::asset(file)?), options);
     }
-    let keyframes = files::keyframes(file, options.order.order)?;
-    print(&inspect::keyframes(&keyframes), options)
+    match files::input(file, options.order.order)? {
+        Input::Keyframes(keyframes) => print(&inspect::keyframes(&keyframes), options),
+        Input::Path(path) => print(&inspect::path(&path), options),
+        Input::Rotations(rotations) => print(&inspect::rotations(&rotations), options),
+        _ => Err(Failure::refused(format!("{}: a kind of input that is not known here", file.display()))),
+    }
 }
 
 /// Whether a file looks like a .glb, or like the JSON of a .gltf.

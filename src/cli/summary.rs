@@ -4,7 +4,7 @@ use super::exit::{Failure, say};
 use super::files::is_standard;
 use dat2glb::clip::Warning;
 use dat2glb::convert::ClipFacts;
-use dat2glb::read::Keyframes;
+use dat2glb::moves::Ground;
 use serde::Serialize;
 use std::io::{self, Write};
 use std::path::Path;
@@ -21,8 +21,10 @@ pub(super) struct Summary<'a> {
     output: String,
     keys: usize,
     boxes: usize,
+    /// Points of the path.
+    points: usize,
     seconds: f64,
-    /// Rotations in all clips together.
+    /// Poses in all clips together: of each box, and of what goes along the path.
     samples: u64,
     bytes: u64,
     elapsed_seconds: f64,
@@ -35,25 +37,29 @@ impl<'a> Summary<'a> {
     pub(super) fn new(
         input: &'a str,
         output: &Path,
-        keyframes: &Keyframes,
+        ground: &Ground,
         clips: &'a [ClipFacts],
         bytes: u64,
         warnings: &'a [Warning],
         elapsed: Duration,
     ) -> Summary<'a> {
-        let clip = &keyframes.clip;
-        let boxes = clip.tracks.len();
+        let inputs = ground.inputs();
+        let keyframes = inputs.keyframes.as_ref().map(|keyframes| &keyframes.clip);
+        let points = inputs.path.as_ref().map_or(0, |path| path.points.len());
+        let boxes = keyframes.map_or(0, |clip| clip.tracks.len());
+        let moving = boxes + usize::from(points > 0);
         Summary {
             schema: 1,
             input,
             output: output.display().to_string(),
-            keys: clip.times.len(),
+            keys: keyframes.map_or(0, |clip| clip.times.len()),
             boxes,
-            seconds: clip.duration(),
-            samples: clips.iter().map(|c| c.samples).sum::<u64>() * boxes as u64,
+            points,
+            seconds: ground.duration(),
+            samples: clips.iter().map(|c| c.samples).sum::<u64>() * moving as u64,
             bytes,
             elapsed_seconds: elapsed.as_secs_f64(),
-            blender_end_frame: (clip.duration() * BLENDER_FPS).ceil() as u64 + 1,
+            blender_end_frame: (ground.duration() * BLENDER_FPS).ceil() as u64 + 1,
             clips,
             warnings,
         }
@@ -88,12 +94,22 @@ impl<'a> Summary<'a> {
         let deviation = deviations.map_or(String::new(), |all| {
             format!(", within {}° of the curve", all.into_iter().fold(0.0, f64::max))
         });
+        let strayed: Option<Vec<f64>> = self.clips.iter().map(|clip| clip.deviation_units).collect();
+        let distance = strayed.map_or(String::new(), |all| {
+            format!(", within {} units of the path", all.into_iter().fold(0.0, f64::max))
+        });
+        let mut parts = Vec::new();
+        if self.boxes > 0 {
+            parts.extend([count(self.keys, "key", "keys"), count(self.boxes, "box", "boxes")]);
+        }
+        if self.points > 0 {
+            parts.push(count(self.points, "point", "points"));
+        }
         format!(
-            "{}: {}, {}, {} s, {clips}, {}{deviation}, {:.3} s\n\
+            "{}: {}, {} s, {clips}, {}{deviation}{distance}, {:.3} s\n\
              Blender: set the scene's end to frame {} at {BLENDER_FPS} fps",
             self.output,
-            count(self.keys, "key", "keys"),
-            count(self.boxes, "box", "boxes"),
+            parts.join(", "),
             (self.seconds * 1e6).round() / 1e6,
             size(self.bytes),
             self.elapsed_seconds,

@@ -12,7 +12,9 @@ use crate::clip::{Clip, Warning};
 use crate::curve::{self, Scheme};
 use crate::moves::{Ground, Move, Mover};
 use crate::sample::{self, Fps, Rotation, Timeline, TooFine, TrackFacts};
-use crate::write::{Animation, Bin, Buffer, Channel, Data, Glb, LARGEST_GLB, Property, Scene, document, glb_size};
+use crate::write::{
+    Animation, Bin, Buffer, Channel, Data, Glb, LARGEST_GLB, Property, Scene, document, glb_size,
+};
 use recipe::recipe;
 use std::io::{self, Seek, Write};
 
@@ -93,7 +95,11 @@ pub struct Plan<'a> {
 impl<'a> Plan<'a> {
     /// Plans the output of what was put together from `source_name`; `options.schemes` is
     /// not empty. Where no scheme makes a difference, there is one clip.
-    pub fn new(ground: &'a Ground<'a>, source_name: &'a str, options: &'a Options) -> Result<Plan<'a>, Error> {
+    pub fn new(
+        ground: &'a Ground<'a>,
+        source_name: &'a str,
+        options: &'a Options,
+    ) -> Result<Plan<'a>, Error> {
         let schemes = if ground.has_schemes() { &options.schemes[..] } else { &options.schemes[..1] };
         let clip = |&scheme: &Scheme| {
             let timeline = ground.timeline(scheme, options.fps, options.key_times)?;
@@ -150,7 +156,8 @@ impl<'a> Plan<'a> {
         if bytes <= LARGEST_GLB {
             return Ok(());
         }
-        let sample: u64 = self.clips.iter().map(|(_, moves, _)| 4 + moves.iter().map(size).sum::<u64>()).sum();
+        let sample: u64 =
+            self.clips.iter().map(|(_, moves, _)| 4 + moves.iter().map(size).sum::<u64>()).sum();
         let room = LARGEST_GLB - glb_size(json, self.scene.bytes().len() as u64);
         let samples = room as f64 / sample as f64;
         let rate = |others: usize| Fps::at_most((samples - others as f64) / self.ground.duration());
@@ -216,7 +223,12 @@ impl<'a> Plan<'a> {
             }
             let mut channels = Vec::new();
             for a_move in moves {
-                channels.push(self.channel(a_move, times, timeline.last(), Data { offset: at, count: times.count }));
+                channels.push(self.channel(
+                    a_move,
+                    times,
+                    timeline.last(),
+                    Data { offset: at, count: times.count },
+                ));
                 at += size(a_move) * times.count;
             }
             let extras = recipe(self.ground, self.options, *scheme, &tracks, distance);

@@ -21,8 +21,8 @@ mod tangent;
 mod transport;
 mod upright;
 
-pub use axis_angle::axis_angle;
 use crate::path::Course;
+pub use axis_angle::axis_angle;
 pub use euler::Euler;
 pub use frame::Frame;
 pub use keyed::keyed;

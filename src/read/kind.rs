@@ -1,12 +1,12 @@
 //! The header of a path or of rotations: `# bezier duration=20`, a kind and what is said
 //! of it in `key=value` words.
 
+use super::Order;
 use super::header::{Line, looks_like_a_number};
 use super::refusal::Problem;
 use super::words::{number, quoted};
-use super::Order;
-use crate::path::Kind as PathKind;
 use crate::orient::Frame;
+use crate::path::Kind as PathKind;
 
 /// What a file holds if not keyframes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

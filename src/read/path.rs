@@ -3,9 +3,9 @@
 use super::blocks::Blocks;
 use super::table::{self, Form, Keys, Opening, Quaternion, Table};
 use super::{Error, Order};
-use crate::orient::Frame;
 use crate::clip::{Lines, Warning};
 use crate::math::Quat;
+use crate::orient::Frame;
 use crate::path::Kind as PathKind;
 use std::io::Read;
 

@@ -4,9 +4,9 @@ use super::blocks::Blocks;
 use super::kind::Kind;
 use super::table::{self, Form, Keys, Opening, Quaternion, Table};
 use super::{Error, Order};
-use crate::orient::Frame;
 use crate::clip::{Lines, Warning};
 use crate::math::Quat;
+use crate::orient::Frame;
 use std::io::Read;
 
 /// What a file of rotations holds, as it stands there: in the file's frame.

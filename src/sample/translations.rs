@@ -13,6 +13,9 @@ pub trait Travel: Sync {
     /// knot parts.
     fn acceleration_bound(&self, from: f64, to: f64) -> f64;
 
+    /// An upper bound of the speed between two times.
+    fn speed_bound(&self, from: f64, to: f64) -> f64;
+
     /// Times at which derivatives may jump, increasing.
     fn knots(&self) -> &[f64];
 }
@@ -61,8 +64,12 @@ fn between(travel: &dyn Travel, (from, to): (f64, f64), line: (DVec3, DVec3), en
     let distance = |t: f64| line.0.lerp(line.1, (t - from) / (to - from)).distance(travel.at(t));
     let (mut worst, mut start, mut at_start) = (0.0f64, from, ends.0);
     for (end, at_end) in inside.map(|knot| (knot, distance(knot))).chain([(to, ends.1)]) {
-        let sagitta = (end - start).powi(2) / 8.0 * travel.acceleration_bound(start, end);
-        worst = worst.max(at_start.max(at_end) + sagitta);
+        let h = end - start;
+        let sagitta = h * h / 8.0 * travel.acceleration_bound(start, end);
+        // Where no acceleration bounds it: the nearer end is at most h/2 away.
+        let playback = line.0.distance(line.1) / (to - from);
+        let strayed = 0.5 * h * (travel.speed_bound(start, end) + playback);
+        worst = worst.max(at_start.max(at_end) + sagitta.min(strayed));
         (start, at_start) = (end, at_end);
     }
     worst
@@ -83,6 +90,10 @@ mod tests {
 
         fn acceleration_bound(&self, from: f64, _to: f64) -> f64 {
             if from < 2.0 { 1.0 } else { 0.0 }
+        }
+
+        fn speed_bound(&self, _from: f64, _to: f64) -> f64 {
+            1.0
         }
 
         fn knots(&self) -> &[f64] {

@@ -142,11 +142,11 @@ fn every_box_of_every_clip_is_compared_at_keys_samples_and_between() {
             assert_eq!(found["keys"]["compared"], keys);
             let limit = found["limit"].as_f64().unwrap();
             for kind in ["keys", "samples", "between"] {
-                let degrees = found[kind]["degrees"].as_f64().unwrap();
+                let degrees = found[kind]["off"].as_f64().unwrap();
                 assert!(degrees > 0.0 && degrees < limit, "{kind} {degrees} {limit}");
                 assert!(found[kind]["time"].as_f64().unwrap() >= 0.0);
             }
-            assert!(found["samples"]["degrees"].as_f64().unwrap() < 3e-5);
+            assert!(found["samples"]["off"].as_f64().unwrap() < 3e-5);
         }
     }
     // For people the same, a line a box.
@@ -186,7 +186,7 @@ fn a_limit_may_be_set_and_needs_something_to_compare_with() {
     let tight = made.codes(&["--against", "in.dat", "--max-error", "0.000001"], 3);
     assert_eq!(tight, ["MOTION_DIFFERS"; 4]);
     made.run(&["check", "out.glb", "--max-error", "1"]).exits(2).says(&["--against"]);
-    made.run(&["check", "out.glb", "--against", "in.dat", "--max-error", "nan"]).exits(2).says(&["degrees"]);
+    made.run(&["check", "out.glb", "--against", "in.dat", "--max-error", "nan"]).exits(2).says(&["off"]);
 }
 
 #[test]

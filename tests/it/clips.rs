@@ -5,6 +5,7 @@ use dat2glb::check::motion::{self, Given};
 use dat2glb::check::{self, Code, Severity};
 use dat2glb::convert::{Options, Plan};
 use dat2glb::curve::{Ends, Scheme};
+use dat2glb::moves::{Ground, Inputs, Shape};
 use dat2glb::read;
 use proptest::prelude::*;
 use std::fmt::Write as _;
@@ -66,13 +67,15 @@ proptest! {
         let ends = if ends.accept(&keyframes.clip).is_ok() { ends } else { Ends::Natural };
         let options = Options {
             name: "random".into(),
-            input: "random.dat".into(),
+            inputs: vec!["random.dat".into()],
             schemes: vec![scheme],
-            ends,
             fps: fps.parse().unwrap(),
             key_times,
         };
-        let plan = Plan::new(&keyframes, "random.dat", &options).unwrap();
+        let inputs = Inputs { keyframes: Some(keyframes), path: None };
+        let shape = Shape { ends, ..Shape::default() };
+        let ground = Ground::new(&inputs, shape, &options.schemes).unwrap();
+        let plan = Plan::new(&ground, "random.dat", &options).unwrap();
         let (file, facts) = plan.write_glb(Cursor::new(Vec::new()), |_| ()).unwrap();
         let mut asset = Asset::open(Box::new(file), Box::new(NoFiles)).unwrap();
 
@@ -84,14 +87,14 @@ proptest! {
         });
         prop_assert!(unexpected.is_none(), "{}", report.text("random.glb"));
 
-        let compared = motion::compare(&mut asset, &keyframes, Given::default(), &mut report).unwrap();
+        let compared = motion::compare(&mut asset, &inputs, Given::default(), &mut report).unwrap();
         prop_assert_eq!(report.count_of(Code::MotionDiffers), 0, "{}", report.text("random.glb"));
         prop_assert_eq!(compared[0].boxes.len(), keyframes.clip.tracks.len());
         for (found, facts) in compared[0].boxes.iter().zip(&facts[0].tracks) {
             let largest = found.difference.largest();
             // But for the last digits of float64.
-            prop_assert!(largest.degrees <= facts.deviation.unwrap() + 1e-12, "{found:?} {facts:?}");
-            prop_assert!(found.difference.samples.degrees < 3e-5, "{found:?}");
+            prop_assert!(largest.off <= facts.deviation.unwrap() + 1e-12, "{found:?} {facts:?}");
+            prop_assert!(found.difference.samples.off < 3e-5, "{found:?}");
         }
     }
 }

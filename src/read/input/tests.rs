@@ -1,7 +1,7 @@
 use super::*;
 use crate::math::Quat;
-use crate::read::{PathKind, Rotations, keyframes};
 use crate::orient::Frame;
+use crate::read::{PathKind, Rotations, keyframes};
 use proptest::prelude::*;
 
 fn read(text: impl AsRef<[u8]>) -> Result<Input, Error> {
@@ -181,7 +181,11 @@ fn what_keyframes_refuse_is_refused() {
             "6:1: expected a time later than 5 in line 2",
             "",
         ),
-        ("# polyline\n-1e308 0 0 0\n1e308 1 1 1\n", "3:1: expected a time less than 1.8e308 s after the first", ""),
+        (
+            "# polyline\n-1e308 0 0 0\n1e308 1 1 1\n",
+            "3:1: expected a time less than 1.8e308 s after the first",
+            "",
+        ),
         ("# polyline\n0 0 0 0 0 0 0\n1 1 1\n", "2:7: expected a rotation, found a quaternion of zeros", ""),
         ("# quat-bezier\n1 0 0 0\n0 0 0 0\n", "3:1: expected a rotation, found a quaternion of zeros", ""),
     ]);
