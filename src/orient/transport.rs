@@ -9,18 +9,20 @@ use super::Course;
 use super::facing::Facing;
 use glam::DVec3;
 
-/// The twist that the steps of a whole course may add up to: 1e-6 degrees.
-const TOLERANCE: f64 = 1e-6 * std::f64::consts::PI / 180.0;
+/// The twist that the steps of a whole course may add up to: half of the 1e-6 degrees
+/// that are promised, since what judges a step is an estimate.
+const TOLERANCE: f64 = 0.5e-6 * std::f64::consts::PI / 180.0;
 
 /// Twist below this is rounding, however short the step.
 const ROUNDING: f64 = 1e-14;
 
-/// Steps turn by less than this, radians, unless the course turns within an instant.
-/// So short a step cannot mistake a whole turn for none.
+/// Half a step turns by less than this, radians, unless the course turns within an
+/// instant. So short a step cannot mistake a whole turn for none.
 const LARGEST_TURN: f64 = 0.2;
 
-/// Parts that a segment is split into before any of them is judged.
-const PARTS: usize = 8;
+/// Steps to judge first: 16 a segment, since one of a high degree may turn often; on
+/// long courses, whose segments are cubics, about this many, and 2 a segment at least.
+const FIRST_STEPS: usize = 16_000;
 
 /// Halvings for accuracy: the twist of a step falls by 2⁻⁵⁰.
 const DEEPEST: u32 = 10;
@@ -87,19 +89,25 @@ impl<'a> Transport<'a> {
         let facing = Facing::upright(forward);
         let mut node = Node { t: place.t, position: place.position, facing };
         transport.nodes.push(node);
+        let parts = (FIRST_STEPS / breaks.len()).clamp(2, 16);
         for pair in breaks.windows(2) {
             node = transport.turn(node, pair[1]);
-            node = transport.advance(node, pair[1]);
+            node = transport.advance(node, pair[1], parts);
         }
         transport
     }
 
     /// Facing at a time, and the node it is carried from.
     pub(super) fn at(&self, t: f64) -> (usize, Facing) {
-        let t = t.clamp(0.0, self.nodes[self.nodes.len() - 1].t);
+        let t = self.within(t);
         let i = self.index(t);
         let place = self.place(t, self.nodes[i].facing.forward);
         (i, self.nodes[i].carried_to(&place))
+    }
+
+    /// The time of the course that is nearest to a time.
+    pub(super) fn within(&self, t: f64) -> f64 {
+        t.clamp(0.0, self.nodes[self.nodes.len() - 1].t)
     }
 
     /// The last node at or before a time.
@@ -123,13 +131,13 @@ impl<'a> Transport<'a> {
     }
 
     /// From a break to the next: to the limit from inside where that is a corner.
-    fn advance(&mut self, mut node: Node, end: f64) -> Node {
+    fn advance(&mut self, mut node: Node, end: f64, parts: usize) -> Node {
         let start = node.t;
-        let share = TOLERANCE * ((end - start) / PARTS as f64) / self.course.duration();
-        for part in 1..=PARTS {
-            let t = if part == PARTS { end } else { start + (end - start) * (part as f64 / PARTS as f64) };
+        let share = TOLERANCE * ((end - start) / parts as f64) / self.course.duration();
+        for part in 1..=parts {
+            let t = if part == parts { end } else { start + (end - start) * (part as f64 / parts as f64) };
             let mut place = self.place(t, node.facing.forward);
-            if part == PARTS && is_corner(self.course, end) {
+            if part == parts && is_corner(self.course, end) {
                 place.forward = before(self.course, start, end).unwrap_or(place.forward);
             }
             node = self.walk(node, place, Effort { depth: 0, share, twist: f64::INFINITY });
@@ -141,16 +149,16 @@ impl<'a> Transport<'a> {
     fn walk(&mut self, start: Node, end: Place, effort: Effort) -> Node {
         let middle = self.place(0.5 * (start.t + end.t), start.facing.forward);
         let half = start.step(&middle);
-        let fine = half.step(&end);
-        let twist = (fine.facing.up - start.carried_to(&end).up).length();
+        let whole = start.step(&end);
+        let twist = (half.carried_to(&end).up - whole.facing.up).length();
         let turns = [start.facing.forward - middle.forward, middle.forward - end.forward];
         let turn = turns[0].length().max(turns[1].length());
         if middle.t > start.t && middle.t < end.t && effort.is_asked(turn, twist) {
             let half = self.walk(start, middle, effort.halved(twist));
             return self.walk(half, end, effort.halved(twist));
         }
-        self.nodes.extend([half, fine]);
-        fine
+        self.nodes.push(whole);
+        whole
     }
 }
 
@@ -171,8 +179,8 @@ impl Effort {
 
     /// Whether a step that turns and twists so much is to be halved.
     fn is_asked(self, turn: f64, twist: f64) -> bool {
-        // Two steps are 16 times as good as the difference from one says. What does not
-        // shrink with the step is rounding.
+        // Two steps are 16 times as good as one: the difference is the one's error. What
+        // does not shrink with the step is rounding.
         let resolved = twist <= self.share.max(ROUNDING);
         let rounding = twist < 1e-8 && twist > self.twist / 8.0;
         (turn > LARGEST_TURN && self.depth < INSTANT) || (!resolved && !rounding && self.depth < DEEPEST)
