@@ -13,8 +13,10 @@ use glam::DVec3;
 /// that are promised, since what judges a step is an estimate.
 const TOLERANCE: f64 = 0.5e-6 * std::f64::consts::PI / 180.0;
 
-/// Twist below this is rounding, however short the step.
-const ROUNDING: f64 = 1e-14;
+/// Twist that is always good enough for a step, radians. It takes 80 000 steps of it to
+/// miss the promise, thousands of segments that wind all the way; without it the steps
+/// of long courses would shrink until none fit into memory.
+const LEAST: f64 = 1e-13;
 
 /// Half a step turns by less than this, radians, unless the course turns within an
 /// instant. So short a step cannot mistake a whole turn for none.
@@ -181,7 +183,7 @@ impl Effort {
     fn is_asked(self, turn: f64, twist: f64) -> bool {
         // Two steps are 16 times as good as one: the difference is the one's error. What
         // does not shrink with the step is rounding.
-        let resolved = twist <= self.share.max(ROUNDING);
+        let resolved = twist <= self.share.max(LEAST);
         let rounding = twist < 1e-8 && twist > self.twist / 8.0;
         (turn > LARGEST_TURN && self.depth < INSTANT) || (!resolved && !rounding && self.depth < DEEPEST)
     }
