@@ -3,8 +3,8 @@
 //! Double reflection: the plane halfway between two points of the course mirrors the
 //! facing at one towards the other, a second mirror makes its forward the tangent
 //! there. The twist it adds is of the fifth order in the step, and made up for by what
-//! two half steps find. Source: Wang, Jüttler,
-//! Zheng & Liu 2008, "Computation of Rotation Minimizing Frames"; docs/math/orientation.md.
+//! two half steps find. Source: Wang, Jüttler, Zheng & Liu 2008, "Computation of
+//! Rotation Minimizing Frames"; docs/math/orientation.md.
 
 use super::Course;
 use super::facing::Facing;
@@ -165,8 +165,9 @@ impl<'a> Transport<'a> {
             let half = self.walk(start, middle, effort.halved(twist.abs()));
             return self.walk(half, end, effort.halved(twist.abs()));
         }
-        // Richardson: two steps err by a sixteenth of what one does.
-        let short = twist * 16.0 / 15.0;
+        // Richardson: two steps err by a sixteenth of what one does. Not where the course
+        // turns within an instant, of which no step is a likeness.
+        let short = if turn < LARGEST_TURN { twist * 16.0 / 15.0 } else { 0.0 };
         if let Some(start) = self.nodes.last_mut() {
             start.short = short;
         }
