@@ -67,7 +67,7 @@ impl<'a> Tangent<'a> {
     pub(super) fn facing(&self, t: f64) -> (usize, Facing) {
         let (i, facing) = self.transport.at(t);
         let Some(spread) = &self.spread else { return (i, facing) };
-        let since = length(self.course(), self.transport.nodes[i].t, t.clamp(0.0, self.course().duration()));
+        let since = length(self.course(), self.transport.nodes[i].t, self.transport.within(t));
         (i, facing.rolled(spread.rate * (spread.lengths[i] + since)))
     }
 }

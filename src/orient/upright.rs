@@ -44,8 +44,7 @@ impl<'a> Upright<'a> {
             let weight = smoothstep(tilt(facing.forward) / STEEP);
             carried + blend(upright - carried, weight)
         });
-        let lean =
-            self.bank.as_ref().map_or(0.0, |bank| bank.at(t.clamp(0.0, self.tangent.course().duration())));
+        let lean = self.bank.as_ref().map_or(0.0, |bank| bank.at(t));
         (node, facing.rotation() * roll(blended + lean))
     }
 

@@ -22,6 +22,11 @@ impl<F: Fn(Jet) -> Point + Sync> Smooth<F> {
         Smooth { keys, corners: Vec::new(), closed: false, formula }
     }
 
+    /// A course of one key that takes no time.
+    fn moment(self) -> Self {
+        Smooth { keys: vec![0.0], ..self }
+    }
+
     pub(super) fn closed(self) -> Self {
         Smooth { closed: true, ..self }
     }
@@ -180,22 +185,20 @@ pub(super) fn knot() -> Smooth<impl Fn(Jet) -> Point + Sync> {
 
 /// From level flight along +Z down a quarter circle, then straight down.
 pub(super) fn sinking() -> impl Course {
-    Polyfill { quarter: 1.0 }
+    Dive
 }
 
-/// A quarter of a circle in the first second or so, then straight on; speed 2.
-struct Polyfill {
-    quarter: f64,
-}
+/// A quarter of a circle in the first two seconds, then straight on; speed 2.
+struct Dive;
 
-impl Polyfill {
+impl Dive {
     const KEYS: [f64; 5] = [0.0, 1.0, 2.0, 3.0, 4.0];
-    fn angle(&self, t: f64) -> f64 {
-        (t / (2.0 * self.quarter)).min(1.0) * TAU / 4.0
+    fn angle(t: f64) -> f64 {
+        (t / 2.0).min(1.0) * TAU / 4.0
     }
 }
 
-impl Course for Polyfill {
+impl Course for Dive {
     fn duration(&self) -> f64 {
         4.0
     }
@@ -209,19 +212,19 @@ impl Course for Polyfill {
     }
 
     fn position(&self, t: f64) -> DVec3 {
-        let (sin, cos) = self.angle(t).sin_cos();
-        let radius = 16.0 * self.quarter / TAU;
-        DVec3::new(1.0, radius * (cos - 1.0) - 2.0 * (t - 2.0 * self.quarter).max(0.0), radius * sin)
+        let (sin, cos) = Dive::angle(t).sin_cos();
+        let radius = 16.0 / TAU;
+        DVec3::new(1.0, radius * (cos - 1.0) - 2.0 * (t - 2.0).max(0.0), radius * sin)
     }
 
     fn velocity(&self, t: f64) -> DVec3 {
-        let (sin, cos) = self.angle(t).sin_cos();
+        let (sin, cos) = Dive::angle(t).sin_cos();
         DVec3::new(0.0, -sin, cos) * 2.0
     }
 
     fn acceleration(&self, t: f64) -> DVec3 {
-        let (sin, cos) = self.angle(t).sin_cos();
-        let rate = if t < 2.0 * self.quarter { TAU / 8.0 / self.quarter } else { 0.0 };
+        let (sin, cos) = Dive::angle(t).sin_cos();
+        let rate = if t < 2.0 { TAU / 8.0 } else { 0.0 };
         DVec3::new(0.0, -cos, -sin) * (2.0 * rate)
     }
 
@@ -247,6 +250,10 @@ fn eased(direction: [f64; 3]) -> impl Course {
 pub(super) fn all() -> Vec<(&'static str, Box<dyn Course>)> {
     let swing = |t: Jet| Vec3::new((t * number(2.0)).sin_cos().1, number(0.0), number(1.0));
     let reversals: [f64; 2] = [TAU / 4.0, TAU / 2.0];
+    let cusp = |t: Jet| {
+        let s = t - number(1.0);
+        Vec3::new(s * s, s * s * s, s * s * s * s)
+    };
     let far = |t: Jet| {
         let (sin, cos) = t.sin_cos();
         Vec3::new(cos + number(1e6), t * number(0.3), sin - number(1e6))
@@ -267,6 +274,8 @@ pub(super) fn all() -> Vec<(&'static str, Box<dyn Course>)> {
         ("eased", Box::new(eased([3.0, 1.0, -2.0]))),
         ("swing", Box::new(Smooth::new(4.0, 3, swing).with_corners(&reversals))),
         ("swing, corners unknown", Box::new(Smooth::new(4.0, 3, swing))),
+        ("cusp", Box::new(Smooth::new(2.0, 1, cusp).with_corners(&[1.0]))),
+        ("moment", Box::new(Smooth::new(1.0, 1, cusp).moment())),
         ("circle", Box::new(circle(5.0).closed())),
         ("helix", Box::new(helix(2.0, 0.7))),
         ("steep helix", Box::new(helix(2.0, 9.0))),

@@ -103,3 +103,24 @@ fn the_lean_wraps_round_the_seam_of_a_closed_course() {
     let upright = Upright::new(&course, 30.0);
     assert!(upright.at(0.0).angle_to(upright.at(6.0)) < 1e-9);
 }
+
+#[test]
+fn passages_are_found_between_nodes_too() {
+    // Drift 0.1 over a loop of 6π: 0.3° off the vertical at best, twice.
+    let course = looping(0.1);
+    let tangent = Tangent::new(&course);
+    for degrees in [15.0f64, 1.0, 0.31] {
+        let found = super::super::passage::passages(&tangent, f64::to_radians(degrees));
+        assert_eq!(found.len(), 2, "{degrees}");
+        for (passage, middle) in found.iter().zip([1.0, 3.0]) {
+            // The loop turns by 90° a second; across the cone it is 2√(limit² − off²).
+            let off = (0.1f64 / (6.0 * std::f64::consts::PI)).atan().to_degrees();
+            let expected = 2.0 * (degrees * degrees - off * off).sqrt();
+            assert!(((passage.end - passage.start) * 90.0 - expected).abs() < 1e-3 * expected);
+            assert!((0.5 * (passage.start + passage.end) - middle).abs() < 1e-9);
+            for facing in [passage.before, passage.after] {
+                assert!((tilt(facing.expect("inside").forward) - f64::to_radians(degrees)).abs() < 1e-9);
+            }
+        }
+    }
+}
