@@ -281,6 +281,14 @@ impl<'a> Ground<'a> {
         moves
     }
 
+    /// How far the path's key points lie apart along the axis where that is most.
+    pub fn extent(&self) -> f64 {
+        let points = self.way.as_ref().map_or(&[][..], |way| way.path.key_points());
+        let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+        let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+        if points.is_empty() { 0.0 } else { (high - low).max_element() }
+    }
+
     /// How the root looks.
     pub fn orient(&self) -> Orient {
         let given = self.way.as_ref().is_some_and(|way| way.any_given);
@@ -314,6 +322,9 @@ fn merged(times: impl Iterator<Item = f64>) -> Vec<f64> {
     times
 }
 
+/// How long before a corner the turn begins that a file shows for its jump, seconds.
+const RAMP: f64 = 1e-3;
+
 impl Way {
     /// The path of a file that begins at `start` on the clock; one without times lasts as
     /// long as the rotation keys, up to `rest`, where there are any.
@@ -343,8 +354,10 @@ impl Way {
         let on_clock = |times: &[f64]| -> Vec<f64> { times.iter().map(|t| start + t).collect() };
         let keys = orient::keyed(&path, &given, shape.level).into_iter().map(|q| q * model);
         let keyed = apart(on_clock(path.key_times()).into_iter().zip(keys));
-        let knots =
-            merged(path.key_times().iter().chain(path.jumps()).chain(path.corners()).map(|t| start + t));
+        // At a corner the object turns at once; a channel can only turn quickly.
+        let ramps = path.corners().iter().map(|t| t - RAMP).filter(|&t| t > 0.0);
+        let times = path.key_times().iter().chain(path.jumps()).chain(path.corners()).copied().chain(ramps);
+        let knots = merged(times.map(|t| start + t));
         let any_given = given.iter().any(Option::is_some);
         Ok(Way { path, start, keyed, any_given, model, knots })
     }
@@ -367,9 +380,18 @@ impl Way {
         }
     }
 
+    /// A time of the clock as one of the path. The float32 time nearest to a corner, which
+    /// may lie just before it, counts as the corner: there the turn is done.
+    fn past_corner(&self, t: f64) -> f64 {
+        let corners = self.path.corners();
+        let next = corners.partition_point(|corner| self.start + corner < t);
+        let here = |corner: &&f64| f64::from((self.start + **corner) as f32) == t;
+        corners.get(next).filter(here).copied().unwrap_or(t - self.start)
+    }
+
     fn facing<'a>(&'a self, attitude: impl Attitude + 'a, level: Level) -> Move<'a> {
         let turn = |at: Box<dyn Attitude + 'a>| -> Move<'a> {
-            Move::Attitude(Box::new(move |t| at.at(t - self.start) * self.model))
+            Move::Attitude(Box::new(move |t| at.at(self.past_corner(t)) * self.model))
         };
         if level == Level::default() {
             turn(Box::new(attitude))

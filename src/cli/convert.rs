@@ -289,7 +289,12 @@ fn picture(asset: &mut Asset, name: &Path, quiet: bool) -> Result<Vec<u8>, Failu
     use super::exit::say;
     use dat2glb::render::LEAST_VISIBLE;
     let picture = super::thumbnail::draw(asset, &Default::default(), name)?;
-    if picture.covered < LEAST_VISIBLE {
+    // What is small in a wide motion may still be seen from nearby.
+    if picture.covered < LEAST_VISIBLE
+        && !dat2glb::render::look(asset, (256, 256), Default::default())
+            .map_err(|error| super::thumbnail::failure(&error, name))?
+            .visible()
+    {
         let message = format!("{}: NOTHING_VISIBLE in its picture; the output was not kept", name.display());
         return Err(Failure::new(Exit::Failed, message));
     }

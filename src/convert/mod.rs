@@ -270,7 +270,7 @@ fn size((_, a_move): &(Mover, Move)) -> u64 {
 fn scene(ground: &Ground) -> Scene {
     match &ground.inputs().keyframes {
         Some(keyframes) => Scene::of(keyframes.clip.body, keyframes.clip.tracks.len()),
-        None => Scene::glider(),
+        None => Scene::glider(ground.extent()),
     }
 }
 

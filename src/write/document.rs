@@ -182,6 +182,7 @@ impl Builder {
             self.root.push(json::Node {
                 name: Some(node.name.clone()),
                 translation: (node.translation != Vec3::ZERO).then(|| node.translation.to_array()),
+                scale: (node.scale != 1.0).then_some([node.scale; 3]),
                 mesh: node.mesh.map(|mesh| Index::new(mesh as u32)),
                 children: (!children.is_empty()).then_some(children),
                 ..Default::default()

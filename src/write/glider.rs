@@ -8,10 +8,13 @@ pub(super) const COLOURS: [Material; 6] = [
     Material { name: "nose", colour: [245, 166, 35] },
     Material { name: "port", colour: [214, 69, 56] },
     Material { name: "starboard", colour: [70, 160, 80] },
-    Material { name: "top", colour: [226, 230, 236] },
+    Material { name: "top", colour: [118, 138, 172] },
     Material { name: "bottom", colour: [70, 80, 100] },
     Material { name: "fin", colour: [58, 110, 207] },
 ];
+
+/// From nose to tail.
+pub(super) const LENGTH: f64 = 2.0;
 
 const NOSE: usize = 0;
 const PORT: usize = 1;
@@ -81,6 +84,11 @@ mod tests {
         // Two tetrahedra on the triangle of tip, ridge and keel, half a wing each.
         let expected = 2.0 * (0.26 * 1.7 / 2.0) * 0.9 / 3.0;
         assert!((volume(&without_fin()) - expected).abs() < 1e-5, "{}", volume(&without_fin()));
+    }
+
+    #[test]
+    fn normals_are_units() {
+        assert!(mesh().corners.iter().all(|(_, normal)| (normal.length() - 1.0).abs() < 1e-6));
     }
 
     #[test]

@@ -38,7 +38,9 @@ impl Mesh {
 
     /// Adds a flat, convex face: its outline counter-clockwise seen from outside.
     pub(super) fn face(&mut self, material: usize, outline: &[Vec3]) {
-        let normal = (outline[1] - outline[0]).cross(outline[2] - outline[0]).normalize();
+        // Newell's normal: corners may lie along one line.
+        let edges = outline.iter().zip(outline.iter().cycle().skip(1));
+        let normal = edges.map(|(a, b)| a.cross(*b)).sum::<Vec3>().normalize();
         let first = self.corners.len() as u16;
         self.corners.extend(outline.iter().map(|&corner| (corner, normal)));
         let part = match self.parts.iter_mut().position(|part| part.material == material) {

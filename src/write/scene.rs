@@ -19,16 +19,25 @@ pub struct Scene {
 }
 
 /// A node of the tree.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Node {
     /// Unique in the file.
     pub name: String,
     /// Place in the parent's frame.
     pub translation: Vec3,
+    /// Size in the parent's units.
+    pub scale: f32,
     /// Index of its mesh.
     pub mesh: Option<usize>,
     /// Indices of its children.
     pub children: Vec<usize>,
+}
+
+impl Default for Node {
+    fn default() -> Node {
+        let (translation, children) = (Vec3::ZERO, Vec::new());
+        Node { name: String::new(), translation, scale: 1.0, mesh: None, children }
+    }
 }
 
 /// Faces of a box: warm colours where an axis points, cool ones where it does not.
@@ -40,6 +49,9 @@ const FACES: [Material; 6] = [
     Material { name: "+Z blue", colour: [58, 110, 207] },
     Material { name: "-Z yellow", colour: [240, 193, 60] },
 ];
+
+/// Beyond this float32 has little room for what viewers compute.
+const GREATEST: f32 = 1e30;
 
 const FREE_BODY: [Material; 6] = [
     Material { name: "body", colour: [196, 200, 206] },
@@ -69,6 +81,7 @@ impl Scene {
             translation: if i == 1 { Vec3::ZERO } else { Vec3::new(0.0, -length, 0.0) },
             mesh: Some(0),
             children: if i < boxes { vec![i + 1] } else { Vec::new() },
+            ..Node::default()
         };
         Scene {
             nodes: std::iter::once(root).chain((1..=boxes).map(link)).collect(),
@@ -83,9 +96,15 @@ impl Scene {
         Scene { turned: vec![1], ..Scene::single("body", mesh, &FREE_BODY) }
     }
 
-    /// The glider that a path alone moves.
-    pub fn glider() -> Scene {
-        Scene::single("glider", glider::mesh(), &glider::COLOURS)
+    /// The glider that a path alone moves: about an eighth as long as the path is wide,
+    /// so that both can be seen.
+    pub fn glider(extent: f64) -> Scene {
+        let mut scene = Scene::single("glider", glider::mesh(), &glider::COLOURS);
+        let scale = (extent / 8.0 / glider::LENGTH) as f32;
+        if scale.is_normal() && scale < GREATEST {
+            scene.nodes[1].scale = scale;
+        }
+        scene
     }
 
     /// One mesh on a node of its own below the root; nothing turns yet.

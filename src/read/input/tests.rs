@@ -1,7 +1,8 @@
 use super::*;
 use crate::math::Quat;
 use crate::orient::Frame;
-use crate::read::{PathKind, Rotations, keyframes};
+use crate::path::Kind as PathKind;
+use crate::read::{Rotations, keyframes};
 use proptest::prelude::*;
 
 fn read(text: impl AsRef<[u8]>) -> Result<Input, Error> {
@@ -403,7 +404,7 @@ proptest! {
                 prop_assert!(path.points.len() >= 2);
                 prop_assert!(path.times.as_ref().is_none_or(|times| times.len() == path.keys().count()));
                 prop_assert_eq!(path.orientations.len(), path.keys().count());
-                prop_assert!(path.kind.is_key(path.points.len() - 1));
+                prop_assert_eq!(path.keys().last(), Some(path.points.len() - 1));
             }
             Ok(Input::Rotations(rotations)) => prop_assert!(rotations.rotations.len() >= 2),
             Ok(Input::Keyframes(_)) => {}
