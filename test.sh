@@ -48,7 +48,13 @@ for ends in natural clamped repeat closed hold; do
   "$dat2glb" convert fixtures/keyframes/closed-loop.dat -o "$out/ends/$ends.gltf" --ends "$ends" -q
   "$dat2glb" convert fixtures/keyframes/closed-loop.dat -o "$out/ends/$ends.glb" --ends "$ends" --no-key-times -q
 done
-for kind in chain body; do
+mkdir "$out/paths"
+for path in fixtures/paths/*.dat; do
+  case "$path" in */euler-bezier.dat | */quat-bezier.dat) continue ;; esac
+  "$dat2glb" convert "$path" -o "$out/paths/" -q
+done
+"$dat2glb" convert fixtures/keyframes/chain-even.dat --path fixtures/paths/flight.dat -o "$out/along.gltf" -q
+for kind in chain body flight bezier euler; do
   "$dat2glb" example "$kind" | "$dat2glb" convert - -o "$out/$kind.glb" -q
 done
 node tests/validator/validate.mjs .tools/node_modules "$out"

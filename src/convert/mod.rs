@@ -88,8 +88,22 @@ pub struct Plan<'a> {
     options: &'a Options,
     scene: Scene,
     /// What each clip's nodes do, and when.
-    clips: Vec<(Scheme, Vec<(Mover, Move<'a>)>, Timeline<'a>)>,
+    clips: Vec<ClipPlan<'a>>,
     warnings: Vec<Warning>,
+}
+
+/// One clip: what every node does by a scheme, and when it is sampled.
+struct ClipPlan<'a> {
+    scheme: Scheme,
+    moves: Vec<(Mover, Move<'a>)>,
+    timeline: Timeline<'a>,
+}
+
+impl ClipPlan<'_> {
+    /// Bytes of one sample of everything, its time too.
+    fn sample_size(&self) -> u64 {
+        4 + self.moves.iter().map(size).sum::<u64>()
+    }
 }
 
 impl<'a> Plan<'a> {
@@ -103,7 +117,7 @@ impl<'a> Plan<'a> {
         let schemes = if ground.has_schemes() { &options.schemes[..] } else { &options.schemes[..1] };
         let clip = |&scheme: &Scheme| {
             let timeline = ground.timeline(scheme, options.fps, options.key_times)?;
-            Ok((scheme, ground.moves(scheme), timeline))
+            Ok(ClipPlan { scheme, moves: ground.moves(scheme), timeline })
         };
         let clips = schemes.iter().map(clip).collect::<Result<_, _>>();
         let clips = clips.map_err(|error| too_fine(error, ground, source_name))?;
@@ -118,7 +132,7 @@ impl<'a> Plan<'a> {
 
     /// How many rotations and places will be written.
     pub fn samples(&self) -> u64 {
-        self.clips.iter().map(|(_, moves, timeline)| (moves.len() * timeline.len()) as u64).sum()
+        self.clips.iter().map(|clip| (clip.moves.len() * clip.timeline.len()) as u64).sum()
     }
 
     /// Writes a .glb to `out`, which stands at its start. `progress` is told of every so
@@ -156,8 +170,7 @@ impl<'a> Plan<'a> {
         if bytes <= LARGEST_GLB {
             return Ok(());
         }
-        let sample: u64 =
-            self.clips.iter().map(|(_, moves, _)| 4 + moves.iter().map(size).sum::<u64>()).sum();
+        let sample: u64 = self.clips.iter().map(ClipPlan::sample_size).sum();
         let room = LARGEST_GLB - glb_size(json, self.scene.bytes().len() as u64);
         let samples = room as f64 / sample as f64;
         let rate = |others: usize| Fps::at_most((samples - others as f64) / self.ground.duration());
@@ -171,10 +184,8 @@ impl<'a> Plan<'a> {
     }
 
     fn binary_length(&self) -> u64 {
-        let clip = |(_, moves, timeline): &(Scheme, Vec<(Mover, Move)>, Timeline)| {
-            (4 + moves.iter().map(size).sum::<u64>()) * timeline.len() as u64
-        };
-        self.scene.bytes().len() as u64 + self.clips.iter().map(clip).sum::<u64>()
+        let clips = self.clips.iter().map(|clip| clip.sample_size() * clip.timeline.len() as u64);
+        self.scene.bytes().len() as u64 + clips.sum::<u64>()
     }
 
     /// An upper bound of the JSON's length: that of a document whose numbers all take the
@@ -183,7 +194,7 @@ impl<'a> Plan<'a> {
         // Numbers of the most digits a float64 and a float32 can take.
         let widest = TrackFacts { deviation: Some(-f64::MIN_POSITIVE), ..TrackFacts::default() };
         let last = -f32::MIN_POSITIVE;
-        let animation = |(scheme, moves, _): &(Scheme, Vec<(Mover, Move)>, Timeline)| {
+        let animation = |ClipPlan { scheme, moves, .. }: &ClipPlan| {
             let channels = moves.iter().map(|a_move| self.channel(a_move, Data::WIDEST, last, Data::WIDEST));
             let tracks = vec![widest; moves.len()];
             let extras = recipe(self.ground, self.options, *scheme, &tracks, widest.deviation);
@@ -201,7 +212,7 @@ impl<'a> Plan<'a> {
         buffer.append(&self.scene.bytes())?;
         let mut shared: Vec<(&Timeline, Data)> = Vec::new();
         let (mut animations, mut facts) = (Vec::new(), Vec::new());
-        for (scheme, moves, timeline) in &self.clips {
+        for ClipPlan { scheme, moves, timeline } in &self.clips {
             let times = match shared.iter().find(|(known, _)| known.is_same(timeline)) {
                 Some(&(_, times)) => times,
                 None => append_times(buffer, timeline)?,

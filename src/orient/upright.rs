@@ -40,18 +40,21 @@ impl<'a> Upright<'a> {
     fn turned(&self, t: f64) -> (usize, Quat) {
         let (node, facing) = self.tangent.facing(t);
         let upright = facing.roll_to_upright();
-        let blended = self.steep_at(t).map_or(upright, |carried| {
-            let weight = smoothstep(tilt(facing.forward) / STEEP);
+        let blended = self.steep_at(t).map_or(upright, |(passage, carried)| {
+            // A course that ends steep, or starts so, has no upright to come back to: what
+            // is carried to its end cannot be opposed on the way.
+            let passes = passage.before.is_some() && passage.after.is_some();
+            let weight = if passes { smoothstep(tilt(facing.forward) / STEEP) } else { 0.0 };
             carried + blend(upright - carried, weight)
         });
         let lean = self.bank.as_ref().map_or(0.0, |bank| bank.at(t));
         (node, facing.rotation() * roll(blended + lean))
     }
 
-    /// The roll that is carried through a time, if it is steep then.
-    fn steep_at(&self, t: f64) -> Option<f64> {
+    /// The steep passage that holds a time, and the roll that is carried through it.
+    fn steep_at(&self, t: f64) -> Option<(&Passage, f64)> {
         let next = self.steep.partition_point(|(passage, _)| passage.end < t);
-        self.steep.get(next).filter(|(passage, _)| passage.start <= t).map(|(_, roll)| *roll)
+        self.steep.get(next).filter(|(passage, _)| passage.start <= t).map(|(passage, roll)| (passage, *roll))
     }
 }
 

@@ -20,6 +20,8 @@ mod help;
 #[cfg(feature = "cli")]
 mod inspect;
 #[cfg(feature = "cli")]
+mod paths;
+#[cfg(feature = "cli")]
 mod refused;
 #[cfg(all(feature = "cli", feature = "render"))]
 mod thumbnail;
