@@ -29,6 +29,7 @@ pub mod read;
 #[cfg(feature = "render")]
 pub mod render;
 pub mod sample;
+pub mod table;
 pub mod write;
 
 /// The README's example, run as a test.

@@ -124,7 +124,7 @@ fn convert(job: &Job, options: &Convert) -> Result<(), Failure> {
     let started = Instant::now();
     let name = display_name(&job.input);
     let paths: Vec<&Path> = std::iter::once(&job.input).chain(&options.path).map(PathBuf::as_path).collect();
-    let inputs = files::inputs(&paths, options.order.order, options.frame)?;
+    let (inputs, _) = files::inputs(&paths, options.order.order, options.frame)?;
     if inputs.path.is_none() && options.along.is_asked() {
         return Err(Failure::usage(format!(
             "{name}: options of a path are given, but no path: say --path PATH.dat"

@@ -27,25 +27,35 @@ pub(super) fn input(path: &Path, order: Option<Order>) -> Result<Input, Failure>
     read::input(&display_name(path), input, order).map_err(|error| Failure::refused(error.to_string()))
 }
 
-/// Puts together what some inputs hold: keyframes and a path, each at most once.
-pub(super) fn inputs(paths: &[&Path], order: Option<Order>, frame: Option<Frame>) -> Result<Inputs, Failure> {
+/// Puts together what some inputs hold, keyframes and a path, each at most once; and in
+/// whose axes they are given, where one of them says so or is so by its kind.
+pub(super) fn inputs(
+    paths: &[&Path],
+    order: Option<Order>,
+    frame: Option<Frame>,
+) -> Result<(Inputs, Option<Frame>), Failure> {
     let mut inputs = Inputs { keyframes: None, path: None };
+    let mut given = frame;
     for path in paths {
         let name = display_name(path);
         let twice = |what: &str| Failure::usage(format!("{name}: expected {what} only once"));
         match input(path, order)? {
             Input::Path(_) if inputs.path.is_some() => return Err(twice("a path")),
-            Input::Path(file) => inputs.path = Some(file),
+            Input::Path(file) => {
+                given = given.or(file.frame);
+                inputs.path = Some(file);
+            }
             _ if inputs.keyframes.is_some() => return Err(twice("rotations")),
             Input::Keyframes(keyframes) => inputs.keyframes = Some(keyframes),
             Input::Rotations(file) => {
+                given = given.or(file.frame).or(Some(file.rotations.usual_frame()));
                 let keys = euler_keys(file, frame);
                 inputs.keyframes = Some(keys.map_err(|error| Failure::refused(format!("{name}: {error}")))?);
             }
             _ => return Err(Failure::refused(format!("{name}: this kind of input cannot be converted"))),
         }
     }
-    Ok(inputs)
+    Ok((inputs, given))
 }
 
 /// Opens an input file.

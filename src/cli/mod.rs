@@ -9,6 +9,7 @@ mod files;
 mod inspect;
 mod output;
 mod progress;
+mod sample;
 mod summary;
 #[cfg(feature = "render")]
 mod thumbnail;
@@ -50,6 +51,7 @@ pub(crate) fn run(arguments: Vec<OsString>) -> ExitCode {
         #[cfg(feature = "render")]
         Command::Thumbnail(options) => thumbnail::run(&options),
         Command::Inspect(options) => inspect::run(&options),
+        Command::Sample(options) => sample::run(&options),
         Command::Example(options) => example::run(&options),
         Command::Completions { shell } => completions(shell),
         Command::Man => man(),

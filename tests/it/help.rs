@@ -8,6 +8,7 @@ const COMMANDS: &[&str] = &[
     #[cfg(feature = "render")]
     "thumbnail",
     "inspect",
+    "sample",
     "example",
     "completions",
     "man",

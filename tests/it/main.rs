@@ -23,5 +23,7 @@ mod inspect;
 mod paths;
 #[cfg(feature = "cli")]
 mod refused;
+#[cfg(feature = "cli")]
+mod sample;
 #[cfg(all(feature = "cli", feature = "render"))]
 mod thumbnail;
