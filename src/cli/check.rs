@@ -59,7 +59,7 @@ fn compare(
     }
     let order = options.order.order.or(motion::quat_order(asset));
     let paths: Vec<&Path> = options.against.iter().map(|path| path.as_path()).collect();
-    let (inputs, _) = files::inputs(&paths, order, motion::frame(asset))?;
+    let inputs = files::gather(&paths, order, motion::frame(asset))?.inputs;
     let Check { scheme, ends, max_error, max_distance, .. } = *options;
     motion::compare(asset, &inputs, Given { scheme, ends, max_error, max_distance }, report).map_err(
         |error| {

@@ -2,14 +2,14 @@
 
 use super::args::Convert;
 use super::exit::{Exit, Failure};
-use super::files::{self, Beside, display_name, is_standard};
+use super::files::{self, Beside, Gathered, display_name, is_standard};
 use super::output::Output;
 use super::progress::Progress;
 use super::summary::Summary;
 use dat2glb::asset::{Asset, Resolve, Source};
 use dat2glb::check::{self, Report, Severity};
 use dat2glb::convert::{ClipFacts, Options, Plan};
-use dat2glb::moves::{Ground, Inputs};
+use dat2glb::moves::Ground;
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Cursor, Seek, Write};
@@ -124,7 +124,7 @@ fn convert(job: &Job, options: &Convert) -> Result<(), Failure> {
     let started = Instant::now();
     let name = display_name(&job.input);
     let paths: Vec<&Path> = std::iter::once(&job.input).chain(&options.path).map(PathBuf::as_path).collect();
-    let (inputs, _) = files::inputs(&paths, options.order.order, options.frame)?;
+    let Gathered { inputs, names, .. } = files::gather(&paths, options.order.order, options.frame)?;
     if inputs.path.is_none() && options.along.is_asked() {
         return Err(Failure::usage(format!(
             "{name}: options of a path are given, but no path: say --path PATH.dat"
@@ -132,7 +132,7 @@ fn convert(job: &Job, options: &Convert) -> Result<(), Failure> {
     }
     let recipe = Options {
         name: stem(&job.input),
-        inputs: input_names(&inputs, &paths),
+        inputs: names,
         schemes: options.schemes(),
         fps: options.fps,
         key_times: !options.no_key_times,
@@ -155,21 +155,6 @@ fn convert(job: &Job, options: &Convert) -> Result<(), Failure> {
     }
     let summary = Summary::new(&name, &job.output, &ground, &facts, bytes, &warnings, started.elapsed());
     summary.print(options.json, options.quiet)
-}
-
-/// The inputs' file names as the output keeps them: rotations, then path.
-fn input_names(inputs: &Inputs, paths: &[&Path]) -> Vec<String> {
-    let name = |path: &&Path| match path.file_name() {
-        Some(file) if !is_standard(path) => file.to_string_lossy().into_owned(),
-        _ => "stdin".to_owned(),
-    };
-    let mut names: Vec<String> = paths.iter().map(name).collect();
-    // A path may have been named first.
-    if names.len() == 2 && inputs.path.is_some() && inputs.keyframes.is_some() {
-        return names;
-    }
-    names.truncate(1);
-    names
 }
 
 /// What was written, and checked, but has no name yet.

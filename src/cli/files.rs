@@ -9,8 +9,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 
-/// An input's name in messages and in outputs: its file name, without folders that mean
-/// nothing elsewhere.
+/// An input's name in messages.
 pub(super) fn display_name(path: &Path) -> String {
     if is_standard(path) { "<stdin>".to_owned() } else { path.display().to_string() }
 }
@@ -27,15 +26,23 @@ pub(super) fn input(path: &Path, order: Option<Order>) -> Result<Input, Failure>
     read::input(&display_name(path), input, order).map_err(|error| Failure::refused(error.to_string()))
 }
 
-/// Puts together what some inputs hold, keyframes and a path, each at most once; and in
-/// whose axes they are given, where one of them says so or is so by its kind.
-pub(super) fn inputs(
+/// What some inputs come to together.
+pub(super) struct Gathered {
+    pub(super) inputs: Inputs,
+    /// In whose axes they are given, where one of them says so or is so by its kind.
+    pub(super) frame: Option<Frame>,
+    /// Their file names without folders: rotations, then path.
+    pub(super) names: Vec<String>,
+}
+
+/// Puts together what some inputs hold: rotations and a path, each at most once.
+pub(super) fn gather(
     paths: &[&Path],
     order: Option<Order>,
     frame: Option<Frame>,
-) -> Result<(Inputs, Option<Frame>), Failure> {
+) -> Result<Gathered, Failure> {
     let mut inputs = Inputs { keyframes: None, path: None };
-    let mut given = frame;
+    let (mut given, mut names) = (frame, Vec::new());
     for path in paths {
         let name = display_name(path);
         let twice = |what: &str| Failure::usage(format!("{name}: expected {what} only once"));
@@ -44,6 +51,8 @@ pub(super) fn inputs(
             Input::Path(file) => {
                 given = given.or(file.frame);
                 inputs.path = Some(file);
+                names.push(short_name(path));
+                continue;
             }
             _ if inputs.keyframes.is_some() => return Err(twice("rotations")),
             Input::Keyframes(keyframes) => inputs.keyframes = Some(keyframes),
@@ -54,8 +63,17 @@ pub(super) fn inputs(
             }
             _ => return Err(Failure::refused(format!("{name}: this kind of input cannot be converted"))),
         }
+        names.insert(0, short_name(path));
     }
-    Ok((inputs, given))
+    Ok(Gathered { inputs, frame: given, names })
+}
+
+/// A file's name as outputs keep it.
+fn short_name(path: &Path) -> String {
+    match path.file_name() {
+        Some(file) if !is_standard(path) => file.to_string_lossy().into_owned(),
+        _ => "stdin".to_owned(),
+    }
 }
 
 /// Opens an input file.

@@ -2,7 +2,7 @@
 
 use super::args::Sample;
 use super::exit::{Exit, Failure};
-use super::files::{self, display_name, is_standard};
+use super::files::{self, Gathered, display_name, is_standard};
 use super::output::Output;
 use dat2glb::moves::Ground;
 use dat2glb::orient::Frame;
@@ -14,7 +14,7 @@ pub(super) fn run(options: &Sample) -> Result<Exit, Failure> {
     let name = display_name(&options.input);
     let paths: Vec<&Path> =
         std::iter::once(&options.input).chain(&options.path).map(PathBuf::as_path).collect();
-    let (inputs, frame) = files::inputs(&paths, options.order.order, options.frame)?;
+    let Gathered { inputs, frame, .. } = files::gather(&paths, options.order.order, options.frame)?;
     let shape = options.along.shape(options.ends, options.time_scale, options.frame);
     let ground = Ground::new(&inputs, shape, &[options.scheme])
         .map_err(|error| Failure::refused(format!("{name}: {error}")))?;
