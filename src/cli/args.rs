@@ -86,8 +86,6 @@ pub(crate) struct Convert {
     /// Send what the inputs turn along this path
     #[arg(long, value_name = "PATH.dat", value_hint = ValueHint::FilePath)]
     pub(crate) path: Option<PathBuf>,
-    #[command(flatten, next_help_heading = "Paths")]
-    pub(crate) along: Along,
     /// Draw a picture of the result too; for several inputs a folder
     #[cfg(feature = "render")]
     #[arg(long, value_name = "OUT.png", value_hint = ValueHint::FilePath)]
@@ -99,6 +97,8 @@ pub(crate) struct Convert {
     /// Print errors only
     #[arg(short, long)]
     pub(crate) quiet: bool,
+    #[command(flatten, next_help_heading = "Paths")]
+    pub(crate) along: Along,
 }
 
 impl Convert {
