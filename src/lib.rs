@@ -1,11 +1,13 @@
 //! Rotations over time in, glTF animations out.
 //!
 //! The modules stand in the order in which data flows through them:
-//! [`read`] turns the text of a `.dat` file into a [`clip`], [`curve`] runs a
-//! smooth motion through its keys, [`sample`] evaluates that motion at the
-//! times a viewer will play, [`mod@write`] makes a glTF file of the samples,
-//! [`asset`] loads any glTF file back, [`check`] judges it and `render`
-//! draws it.
+//! [`read`] turns the text of a `.dat` file into a [`clip`] or into points,
+//! [`curve`] runs a smooth motion through its keys, [`path`] through points,
+//! and [`orient`] turns an object on its way; [`moves`] puts them on one
+//! clock, [`sample`] evaluates them at the times a viewer will play,
+//! [`mod@write`] makes a glTF file of the samples, [`asset`] loads any glTF
+//! file back, [`check`] judges it and `render` draws it. [`convert`] is these
+//! stages in a row.
 //!
 //! # Conventions
 //!

@@ -335,7 +335,9 @@ impl Way {
         let times: Option<Vec<f64>> =
             file.times.as_ref().map(|times| times.iter().copied().map(scaled).collect());
         let unsaid = file.times.is_none() && shape.speed.is_none();
-        let duration = file.duration.map(scaled).or(rest.filter(|_| unsaid));
+        // Asking for a speed wins over the header's duration.
+        let said = file.duration.filter(|_| shape.speed.is_none());
+        let duration = said.map(scaled).or(rest.filter(|_| unsaid));
         let options = path::Options {
             ends: shape.path_ends,
             timing: shape.timing,

@@ -73,7 +73,7 @@ pub(crate) struct Convert {
     #[arg(long, default_value = "60")]
     pub(crate) fps: Fps,
     /// Everything so many times as fast
-    #[arg(long, value_name = "F", default_value = "1", value_parser = positive)]
+    #[arg(long, value_name = "F", default_value = "1", allow_negative_numbers = true, value_parser = positive)]
     pub(crate) time_scale: f64,
     /// Whose x, y and z the numbers of a path or of Euler angles are; overrides the header
     #[arg(long, value_parser = frame())]
@@ -227,7 +227,7 @@ pub(crate) struct Sample {
     #[arg(long, value_name = "PATH.dat", value_hint = ValueHint::FilePath)]
     pub(crate) path: Option<PathBuf>,
     /// Everything so many times as fast
-    #[arg(long, value_name = "F", default_value = "1", value_parser = positive)]
+    #[arg(long, value_name = "F", default_value = "1", allow_negative_numbers = true, value_parser = positive)]
     pub(crate) time_scale: f64,
     /// Whose x, y and z the numbers are, of the input and of the table
     #[arg(long, value_parser = frame())]
@@ -304,8 +304,9 @@ pub(crate) struct Along {
         ("none", ""), ("in", "at the start"), ("out", "at the end"), ("in-out", "at both"),
     ]))]
     ease: Ease,
-    /// Mean speed, units a second: the duration is the length divided by it
-    #[arg(long, value_name = "V", value_parser = positive)]
+    /// Mean speed, units a second: the duration is the length divided by it, whatever the
+    /// file's header says
+    #[arg(long, value_name = "V", allow_negative_numbers = true, value_parser = positive)]
     speed: Option<f64>,
     /// What the path does at its ends
     #[arg(long, default_value = "natural", value_parser = named(PathEnds::from_name, vec![
@@ -331,14 +332,27 @@ pub(crate) struct Along {
         value_name = "DEG",
         default_value = "0",
         allow_negative_numbers = true,
-        hide_default_value = true
+        hide_default_value = true,
+        value_parser = finite
     )]
     bank: f64,
     /// The last N orientation keys have no pitch and no roll: a landing
-    #[arg(long, value_name = "N", default_value = "0", hide_default_value = true)]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value = "0",
+        hide_default_value = true,
+        allow_negative_numbers = true
+    )]
     level_end: usize,
     /// The first N orientation keys have no pitch and no roll
-    #[arg(long, value_name = "N", default_value = "0", hide_default_value = true)]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value = "0",
+        hide_default_value = true,
+        allow_negative_numbers = true
+    )]
     level_start: usize,
     /// Where the model's nose points
     #[arg(long, value_name = "AXIS", default_value = "Z", allow_hyphen_values = true, value_parser = axis())]
@@ -349,8 +363,7 @@ pub(crate) struct Along {
 }
 
 impl Along {
-    /// All that shapes the motion; `None` where only a path could be meant and there is
-    /// none.
+    /// All that shapes the motion.
     pub(crate) fn shape(&self, ends: Ends, time_scale: f64, frame: Option<Frame>) -> Shape {
         Shape {
             ends,
@@ -390,9 +403,14 @@ fn frame() -> ValueParser {
     )
 }
 
+fn finite(text: &str) -> Result<f64, String> {
+    let value: Option<f64> = text.parse().ok();
+    value.filter(|value| value.is_finite()).ok_or_else(|| "expected a number".to_owned())
+}
+
 fn positive(text: &str) -> Result<f64, String> {
-    let value: f64 = text.parse().map_err(|_| "expected a number".to_owned())?;
-    if value > 0.0 && value.is_finite() { Ok(value) } else { Err("expected a number above 0".to_owned()) }
+    let value = finite(text)?;
+    if value > 0.0 { Ok(value) } else { Err("expected a number above 0".to_owned()) }
 }
 
 /// One word of `--scheme`: a scheme, or all of them.

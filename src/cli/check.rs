@@ -1,7 +1,7 @@
 //! `dat2glb check`: files against the specification, their input, and the eye.
 
 use super::args::Check;
-use super::exit::{Exit, Failure};
+use super::exit::{Exit, Failure, shown};
 use super::files;
 use dat2glb::asset::{self, Asset};
 use dat2glb::check::motion::{self, ClipMotion, Given};
@@ -42,7 +42,7 @@ fn one(file: &Path, options: &Check) -> Result<Exit, Failure> {
         Err(error) => return Err(files::cannot_read(file, &error)),
     };
     if !options.quiet {
-        print(file, options, &report, &motions)?;
+        shown(print(file, options, &report, &motions))?;
     }
     let limit = if options.strict { Severity::Warning } else { Severity::Error };
     Ok(if report.worst() >= Some(limit) { Exit::Failed } else { Exit::Done })

@@ -2,14 +2,13 @@
 
 use super::args::Convert;
 use super::exit::{Exit, Failure};
-use super::files::{self, Beside, Gathered, display_name, is_standard};
+use super::files::{self, Beside, display_name, is_standard};
 use super::output::Output;
 use super::progress::Progress;
 use super::summary::Summary;
 use dat2glb::asset::{Asset, Resolve, Source};
 use dat2glb::check::{self, Report, Severity};
 use dat2glb::convert::{ClipFacts, Options, Plan};
-use dat2glb::moves::Ground;
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Cursor, Seek, Write};
@@ -124,22 +123,16 @@ fn convert(job: &Job, options: &Convert) -> Result<(), Failure> {
     let started = Instant::now();
     let name = display_name(&job.input);
     let paths: Vec<&Path> = std::iter::once(&job.input).chain(&options.path).map(PathBuf::as_path).collect();
-    let Gathered { inputs, names, .. } = files::gather(&paths, options.order.order, options.frame)?;
-    if inputs.path.is_none() && options.along.is_asked() {
-        return Err(Failure::usage(format!(
-            "{name}: options of a path are given, but no path: say --path PATH.dat"
-        )));
-    }
+    let gathered = files::gather(&paths, options.order.order, options.frame)?;
     let recipe = Options {
         name: stem(&job.input),
-        inputs: names,
+        inputs: gathered.names.clone(),
         schemes: options.schemes(),
         fps: options.fps,
         key_times: !options.no_key_times,
     };
     let shape = options.along.shape(options.ends, options.time_scale, options.frame);
-    let refused = |error: &dyn std::fmt::Display| Failure::refused(format!("{name}: {error}"));
-    let ground = Ground::new(&inputs, shape, &recipe.schemes).map_err(|error| refused(&error))?;
+    let ground = gathered.ground(&name, &options.along, shape, &recipe.schemes)?;
     let plan = Plan::new(&ground, &name, &recipe).map_err(|error| Failure::refused(error.to_string()))?;
     let mut written =
         if is_gltf(&job.output) { gltf(job, &plan, options)? } else { glb(job, &plan, options)? };

@@ -1,7 +1,7 @@
 //! Small inputs to start from.
 
 use super::args::{Example, Kind};
-use super::exit::{Exit, Failure};
+use super::exit::{Exit, Failure, shown};
 use std::io::Write;
 
 pub(super) fn run(options: &Example) -> Result<Exit, Failure> {
@@ -12,6 +12,6 @@ pub(super) fn run(options: &Example) -> Result<Exit, Failure> {
         Kind::Bezier => include_str!("examples/bezier.dat"),
         Kind::Euler => include_str!("examples/euler.dat"),
     };
-    std::io::stdout().write_all(text.as_bytes())?;
+    shown(std::io::stdout().write_all(text.as_bytes()))?;
     Ok(Exit::Done)
 }

@@ -21,7 +21,7 @@ pub(crate) enum Exit {
 #[derive(Debug)]
 pub(crate) struct Failure {
     pub(crate) exit: Exit,
-    /// For standard error; empty where there is nobody left to tell.
+    /// For standard error.
     pub(crate) message: String,
 }
 
@@ -43,20 +43,23 @@ impl Failure {
     }
 
     pub(crate) fn print(&self) {
-        if !self.message.is_empty() {
-            say(&format!("error: {}", self.message));
-        }
+        say(&format!("error: {}", self.message));
     }
 }
 
-/// Writing to standard output or standard error failed. A reader who has seen enough
-/// (`| head`) is no failure.
+/// Writing to standard output failed.
 impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Failure {
-        match error.kind() {
-            io::ErrorKind::BrokenPipe => Failure::new(Exit::Done, ""),
-            _ => Failure::environment(format!("standard output: {error}")),
-        }
+        Failure::environment(format!("standard output: {error}"))
+    }
+}
+
+/// What became of showing something. A reader who has seen enough (`| head`) is no
+/// failure, and takes nothing from what the exit code says.
+pub(crate) fn shown(written: io::Result<()>) -> Result<(), Failure> {
+    match written {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        other => other.map_err(Failure::from),
     }
 }
 

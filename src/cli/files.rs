@@ -1,9 +1,12 @@
 //! Opening what the command line names.
 
+use super::args::Along;
 use super::exit::Failure;
 use dat2glb::asset::{self, Asset, Resolve, Source};
-use dat2glb::moves::{Inputs, euler_keys};
+use dat2glb::curve::Scheme;
+use dat2glb::moves::{self, Ground, Inputs, Shape, euler_keys};
 use dat2glb::orient::Frame;
+use dat2glb::path;
 use dat2glb::read::{self, Input, Order};
 use std::fs::File;
 use std::io::{self, Read};
@@ -66,6 +69,30 @@ pub(super) fn gather(
         names.insert(0, short_name(path));
     }
     Ok(Gathered { inputs, frame: given, names })
+}
+
+impl Gathered {
+    /// The inputs on one clock, shaped by the options; `name` is what messages are about.
+    pub(super) fn ground(
+        &self,
+        name: &str,
+        along: &Along,
+        shape: Shape,
+        schemes: &[Scheme],
+    ) -> Result<Ground<'_>, Failure> {
+        if self.inputs.path.is_none() && along.is_asked() {
+            let problem = "options of a path are given, but no path: say --path PATH.dat";
+            return Err(Failure::usage(format!("{name}: {problem}")));
+        }
+        Ground::new(&self.inputs, shape, schemes).map_err(|error| {
+            let message = format!("{name}: {error}");
+            match error {
+                // Wrong whatever the input.
+                moves::Error::Model(_) | moves::Error::Path(path::Error::Ease) => Failure::usage(message),
+                _ => Failure::refused(message),
+            }
+        })
+    }
 }
 
 /// A file's name as outputs keep it.

@@ -1,7 +1,7 @@
 //! `dat2glb inspect`: what a file holds.
 
 use super::args::Inspect;
-use super::exit::{Exit, Failure};
+use super::exit::{Exit, Failure, shown};
 use super::files;
 use dat2glb::inspect;
 use dat2glb::read::Input;
@@ -32,14 +32,14 @@ fn is_gltf(file: &Path) -> Result<bool, Failure> {
 }
 
 fn print(summary: &(impl Serialize + Display), options: &Inspect) -> Result<Exit, Failure> {
-    let mut out = io::stdout().lock();
-    if options.json {
+    let text = if options.json {
         let mut value = serde_json::to_value(summary).expect("plain data becomes JSON");
         value["schema"] = 1.into();
         value["file"] = options.file.display().to_string().into();
-        writeln!(out, "{value:#}")?;
+        format!("{value:#}\n")
     } else {
-        write!(out, "{}\n{summary}", options.file.display())?;
-    }
+        format!("{}\n{summary}", options.file.display())
+    };
+    shown(io::stdout().write_all(text.as_bytes()))?;
     Ok(Exit::Done)
 }

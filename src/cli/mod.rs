@@ -16,7 +16,7 @@ mod thumbnail;
 
 use args::{Cli, Command};
 use clap::{CommandFactory, Parser};
-use exit::{Exit, Failure};
+use exit::{Exit, Failure, shown};
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -40,9 +40,8 @@ pub(crate) fn run(arguments: Vec<OsString>) -> ExitCode {
         Ok(cli) => cli,
         Err(error) => {
             // Help and version are written to standard output and are no failure.
-            let shown = error.print();
             let code = if error.use_stderr() { Exit::Usage } else { Exit::Done };
-            return finish(shown.map(|()| code).map_err(Failure::from));
+            return finish(shown(error.print()).map(|()| code));
         }
     };
     finish(match cli.command {
@@ -59,7 +58,7 @@ pub(crate) fn run(arguments: Vec<OsString>) -> ExitCode {
 }
 
 fn say_first_steps() -> Result<Exit, Failure> {
-    io::stderr().write_all(FIRST_STEPS.as_bytes())?;
+    shown(io::stderr().write_all(FIRST_STEPS.as_bytes()))?;
     Ok(Exit::Usage)
 }
 
@@ -75,7 +74,7 @@ fn finish(outcome: Result<Exit, Failure>) -> ExitCode {
 fn completions(shell: clap_complete::Shell) -> Result<Exit, Failure> {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "dat2glb", &mut script);
-    io::stdout().write_all(&script)?;
+    shown(io::stdout().write_all(&script))?;
     Ok(Exit::Done)
 }
 
@@ -99,6 +98,6 @@ fn man() -> Result<Exit, Failure> {
         let section = String::from_utf8_lossy(&section).replace("\n.SH ", "\n.SS ");
         write!(page, ".SH \"DAT2GLB {}\"\n{section}", subcommand.get_name().to_uppercase())?;
     }
-    io::stdout().write_all(&page)?;
+    shown(io::stdout().write_all(&page))?;
     Ok(Exit::Done)
 }

@@ -5,7 +5,7 @@
 //! killed process leaves what was there before. Devices and pipes are written straight,
 //! from a temporary file, once everything is known to be good.
 
-use super::exit::Failure;
+use super::exit::{self, Failure};
 use std::fs::{self, File, Metadata};
 use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -87,7 +87,7 @@ impl Output {
         let shown = self.shown;
         let done = match (self.file, self.target) {
             (Aside::Spool(file), Target::StandardOutput) => {
-                return copy(file, &mut io::stdout().lock()).map_err(Failure::from);
+                return exit::shown(copy(file, &mut io::stdout().lock()));
             }
             (Aside::Spool(file), Target::Straight(path)) => {
                 File::options().write(true).open(path).and_then(|mut out| copy(file, &mut out))

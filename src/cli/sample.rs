@@ -2,9 +2,8 @@
 
 use super::args::Sample;
 use super::exit::{Exit, Failure};
-use super::files::{self, Gathered, display_name, is_standard};
+use super::files::{self, display_name, is_standard};
 use super::output::Output;
-use dat2glb::moves::Ground;
 use dat2glb::orient::Frame;
 use dat2glb::table::Table;
 use std::io::{BufWriter, Write};
@@ -14,11 +13,10 @@ pub(super) fn run(options: &Sample) -> Result<Exit, Failure> {
     let name = display_name(&options.input);
     let paths: Vec<&Path> =
         std::iter::once(&options.input).chain(&options.path).map(PathBuf::as_path).collect();
-    let Gathered { inputs, frame, .. } = files::gather(&paths, options.order.order, options.frame)?;
+    let gathered = files::gather(&paths, options.order.order, options.frame)?;
     let shape = options.along.shape(options.ends, options.time_scale, options.frame);
-    let ground = Ground::new(&inputs, shape, &[options.scheme])
-        .map_err(|error| Failure::refused(format!("{name}: {error}")))?;
-    let table = Table::new(&ground, options.scheme, options.notation, frame.unwrap_or(Frame::Gltf));
+    let ground = gathered.ground(&name, &options.along, shape, &[options.scheme])?;
+    let table = Table::new(&ground, options.scheme, options.notation, gathered.frame.unwrap_or(Frame::Gltf));
     let output = match &options.output {
         Some(path) if !is_standard(path) => {
             Output::create(path, &paths.iter().map(|p| p.to_path_buf()).collect::<Vec<_>>())?

@@ -1,6 +1,6 @@
 //! What is said of a conversion when it is done.
 
-use super::exit::{Failure, say};
+use super::exit::{Failure, say, shown};
 use super::files::is_standard;
 use dat2glb::clip::Warning;
 use dat2glb::convert::ClipFacts;
@@ -73,7 +73,7 @@ impl<'a> Summary<'a> {
             if is_standard(Path::new(&self.output)) {
                 say(&line);
             } else {
-                writeln!(io::stdout(), "{line}")?;
+                shown(writeln!(io::stdout(), "{line}"))?;
             }
         } else if !quiet {
             for Warning { code, message } in self.warnings {
@@ -136,6 +136,5 @@ pub(super) fn print_failure(input: &Path, failure: &Failure) -> Result<(), Failu
         "error": failure.message,
         "exitCode": failure.exit as u8,
     });
-    writeln!(io::stdout(), "{line}")?;
-    Ok(())
+    shown(writeln!(io::stdout(), "{line}"))
 }

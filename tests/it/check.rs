@@ -327,3 +327,26 @@ fn the_help_names_every_flag_of_the_comparison() {
         assert!(help.contains(flag), "{flag}");
     }
 }
+
+#[cfg(unix)]
+#[test]
+fn a_reader_who_leaves_takes_nothing_from_the_exit_code() {
+    use crate::support::tool::program;
+    let folder = tempfile::tempdir().unwrap();
+    let (bad, input) = (folder.path().join("bad.glb"), keyframes("single-even"));
+    run(["convert", input.to_str().unwrap(), "-o", bad.to_str().unwrap()]).exits(0);
+    let mut glb = Glb::read(&bad);
+    glb.json["animations"][0]["channels"][0]["target"]["node"] = json!(99);
+    glb.write(&bad);
+    let closed = || {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        writer
+    };
+    for (arguments, code) in
+        [(&["check", bad.to_str().unwrap()][..], 3), (&["convert"], 2), (&["--help"], 0), (&[], 2)]
+    {
+        let status = program().args(arguments).stdout(closed()).stderr(closed()).status().unwrap();
+        assert_eq!(status.code(), Some(code), "{arguments:?}");
+    }
+}

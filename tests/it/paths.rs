@@ -182,7 +182,14 @@ fn options_of_a_path_need_one() {
     let arguments = ["convert", text(&two[0]), "--path", text(&two[1]), "-o", text(&output)];
     run(arguments).exits(2).says(&["only once"]);
     let arguments = ["convert", text(&two[0]), "-o", text(&output), "--model-up", "Z"];
-    run(arguments).exits(1).says(&["one line"]);
+    run(arguments).exits(2).says(&["one line"]);
+    let arguments = ["convert", text(&two[0]), "-o", text(&output), "--ease", "in"];
+    run(arguments).exits(2).says(&["constant-speed"]);
+    let arguments = ["sample", text(&chain), "--timing", "chord"];
+    run(arguments).exits(2).says(&["--path"]);
+    for wrong in [["--speed", "-3"], ["--time-scale", "0"], ["--bank", "nan"]] {
+        run(["convert", text(&two[0])].iter().chain(&wrong)).exits(2).says(&["expected a number"]);
+    }
     let refused =
         ["convert", text(&path("chordal")), "-o", text(&output), "--timing", "uniform"].map(str::to_owned);
     run(refused).exits(1).says(&["catmull-rom", "constant-speed"]);
