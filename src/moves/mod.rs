@@ -4,15 +4,20 @@
 //! scheme turns it into [`Move`]s, a node's rotation or place each. `convert` samples
 //! them, `check` compares them with how a file plays.
 
-use crate::clip::{Body, Clip};
+mod euler;
+mod way;
+
+pub use euler::euler_keys;
+
 use crate::curve::{Ends, Motion, NotClosed, Scheme};
 use crate::math::Quat;
-use crate::orient::{self, Attitude, Axis, Euler, Frame, Level, Levelled, ParallelAxes, Tangent, Upright};
-use crate::path::{self, Ease, Path, PathEnds, Timing};
-use crate::read::{Keyframes, Order, PathFile, Rotations, RotationsFile};
+use crate::orient::{Axis, Frame, Level, ParallelAxes};
+use crate::path::{self, Ease, PathEnds, Timing};
+use crate::read::{Keyframes, PathFile};
 use crate::sample::{Fps, Rotation, Timeline, TooFine, Travel};
 use glam::DVec3;
 use std::borrow::Cow;
+use way::Way;
 
 /// What is put together.
 #[derive(Debug)]
@@ -181,20 +186,6 @@ pub struct Ground<'a> {
     knots: Cow<'a, [f64]>,
 }
 
-/// The path, and when it begins on the common clock.
-struct Way {
-    path: Path,
-    start: f64,
-    /// Orientation by keys: their times on the common clock, and they themselves.
-    keyed: (Vec<f64>, Vec<Quat>),
-    /// The file gives some of them.
-    any_given: bool,
-    /// Turns the model to fit +Z forward and +Y up.
-    model: Quat,
-    /// The path's knots on the common clock.
-    knots: Vec<f64>,
-}
-
 impl<'a> Ground<'a> {
     /// Puts inputs on one clock, for some schemes; there is at least one input.
     pub fn new(inputs: &'a Inputs, shape: Shape, schemes: &[Scheme]) -> Result<Ground<'a>, Error> {
@@ -301,151 +292,10 @@ impl<'a> Ground<'a> {
     }
 }
 
-/// Keys at times that float32 can tell apart: of several at one time the last counts,
-/// which faces the way on.
-fn apart(keys: impl Iterator<Item = (f64, Quat)>) -> (Vec<f64>, Vec<Quat>) {
-    let mut kept: Vec<(f64, Quat)> = Vec::new();
-    for (time, key) in keys {
-        match kept.last_mut() {
-            Some(last) if last.0 as f32 == time as f32 => last.1 = key,
-            _ => kept.push((time, key)),
-        }
-    }
-    kept.into_iter().unzip()
-}
-
 /// Times in order, those that float32 cannot tell apart taken for one.
 fn merged(times: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut times: Vec<f64> = times.collect();
     times.sort_by(f64::total_cmp);
     times.dedup_by(|b, a| *b as f32 == *a as f32);
     times
-}
-
-/// How long before a corner the turn begins that a file shows for its jump, seconds.
-const RAMP: f64 = 1e-3;
-
-impl Way {
-    /// The path of a file that begins at `start` on the clock; one without times lasts as
-    /// long as the rotation keys, up to `rest`, where there are any.
-    fn new(file: &PathFile, start: f64, rest: Option<f64>, shape: &Shape) -> Result<Way, Error> {
-        let frame = shape.frame.or(file.frame).unwrap_or(Frame::Gltf);
-        let points: Vec<DVec3> = file.points.iter().map(|&p| frame.vector_to_gltf(p.into())).collect();
-        let scaled = |t: f64| t / shape.time_scale;
-        let times: Option<Vec<f64>> =
-            file.times.as_ref().map(|times| times.iter().copied().map(scaled).collect());
-        let unsaid = file.times.is_none() && shape.speed.is_none();
-        // Asking for a speed wins over the header's duration.
-        let said = file.duration.filter(|_| shape.speed.is_none());
-        let duration = said.map(scaled).or(rest.filter(|_| unsaid));
-        let options = path::Options {
-            ends: shape.path_ends,
-            timing: shape.timing,
-            ease: shape.ease,
-            duration,
-            speed: shape.speed.map(|speed| speed * shape.time_scale),
-        };
-        let mut path = Path::new(file.kind, &points, times.as_deref(), &options)?;
-        if unsaid && duration.is_none() && shape.time_scale != 1.0 {
-            let duration = Some(scaled(path.duration()));
-            path = Path::new(file.kind, &points, None, &path::Options { duration, ..options })?;
-        }
-        let given: Vec<Option<Quat>> =
-            file.orientations.iter().map(|given| given.map(|q| frame.rotation_to_gltf(q))).collect();
-        let model = orient::model_frame(shape.model_forward, shape.model_up)?;
-        let on_clock = |times: &[f64]| -> Vec<f64> { times.iter().map(|t| start + t).collect() };
-        let keys = orient::keyed(&path, &given, shape.level).into_iter().map(|q| q * model);
-        let keyed = apart(on_clock(path.key_times()).into_iter().zip(keys));
-        // At a corner the object turns at once; a channel can only turn quickly.
-        let ramps = path.corners().iter().map(|t| t - RAMP).filter(|&t| t > 0.0);
-        let times = path.key_times().iter().chain(path.jumps()).chain(path.corners()).copied().chain(ramps);
-        let knots = merged(times.map(|t| start + t));
-        let any_given = given.iter().any(Option::is_some);
-        Ok(Way { path, start, keyed, any_given, model, knots })
-    }
-
-    fn end(&self) -> f64 {
-        self.start + self.path.duration()
-    }
-
-    /// How the root turns, if it does.
-    fn attitude<'a>(&'a self, orient: Orient, shape: &Shape, scheme: Scheme) -> Option<Move<'a>> {
-        match orient {
-            Orient::None => None,
-            Orient::Keyed => {
-                // The path's own ends close it; its keys need not be equal there.
-                let ends = if shape.ends == Ends::Closed { Ends::Natural } else { shape.ends };
-                Some(Move::Keys(Motion::new(&self.keyed.0, &self.keyed.1, scheme, ends)))
-            }
-            Orient::Tangent => Some(self.facing(Tangent::new(&self.path), shape.level)),
-            Orient::Upright => Some(self.facing(Upright::new(&self.path, shape.bank), shape.level)),
-        }
-    }
-
-    /// A time of the clock as one of the path. The float32 time nearest to a corner, which
-    /// may lie just before it, counts as the corner: there the turn is done.
-    fn past_corner(&self, t: f64) -> f64 {
-        let corners = self.path.corners();
-        let next = corners.partition_point(|corner| self.start + corner < t);
-        let here = |corner: &&f64| f64::from((self.start + **corner) as f32) == t;
-        corners.get(next).filter(here).copied().unwrap_or(t - self.start)
-    }
-
-    fn facing<'a>(&'a self, attitude: impl Attitude + 'a, level: Level) -> Move<'a> {
-        let turn = |at: Box<dyn Attitude + 'a>| -> Move<'a> {
-            Move::Attitude(Box::new(move |t| at.at(self.past_corner(t)) * self.model))
-        };
-        if level == Level::default() {
-            turn(Box::new(attitude))
-        } else {
-            turn(Box::new(Levelled::new(attitude, level)))
-        }
-    }
-}
-
-impl Travel for &Way {
-    fn at(&self, t: f64) -> DVec3 {
-        self.path.position(t - self.start)
-    }
-
-    fn acceleration_bound(&self, from: f64, to: f64) -> f64 {
-        if to <= self.start || from >= self.end() {
-            return 0.0;
-        }
-        self.path.acceleration_bound(from - self.start, to - self.start)
-    }
-
-    fn speed_bound(&self, from: f64, to: f64) -> f64 {
-        self.path.speed_bound(from - self.start, to - self.start)
-    }
-
-    fn knots(&self) -> &[f64] {
-        &self.knots
-    }
-}
-
-/// Euler angles as rotation keys of one free body, in glTF's frame; without times they are
-/// evenly spaced, and without a duration a second apart. `frame` says whose axes are meant
-/// where the file does not.
-pub fn euler_keys(file: RotationsFile, frame: Option<Frame>) -> Result<Keyframes, Error> {
-    let frame = frame.or(file.frame).unwrap_or(file.rotations.usual_frame());
-    let Rotations::Euler(angles) = &file.rotations else {
-        return Err(Error::Controls(file.rotations.name()));
-    };
-    let even = |i: usize| i as f64 * file.duration.map_or(1.0, |seconds| seconds / (angles.len() - 1) as f64);
-    let times = file.times.unwrap_or_else(|| (0..angles.len()).map(even).collect());
-    let mut track: Vec<Quat> = Vec::with_capacity(angles.len());
-    for &[roll, pitch, yaw] in angles {
-        let key = frame.rotation_to_gltf(Euler { roll, pitch, yaw }.rotation());
-        track.push(track.last().map_or(key, |&before| key.aligned_to(before)));
-    }
-    let clip = Clip { body: Body::Free, start: file.start, times, tracks: vec![track], lines: file.lines };
-    Ok(Keyframes {
-        clip,
-        order: Order::default(),
-        warnings: file.warnings,
-        largest_norm_error: file.largest_norm_error,
-        hash: file.hash,
-        bytes: file.bytes,
-    })
 }
