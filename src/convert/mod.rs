@@ -318,8 +318,10 @@ fn warnings(ground: &Ground, options: &Options) -> Vec<Warning> {
     if let Some(keyframes) = &inputs.keyframes {
         warnings.extend_from_slice(&keyframes.warnings);
         warnings.extend(close_keys(&keyframes.clip, options));
+        let (clip, ends) = (&keyframes.clip, ground.shape().ends);
+        let place = |key| clip.place(key);
         for &scheme in &options.schemes {
-            warnings.extend(curve::warnings(&keyframes.clip, scheme, ground.shape().ends));
+            warnings.extend(curve::warnings(&clip.times, &clip.tracks, &place, scheme, ends));
         }
     }
     warnings.extend(inputs.path.iter().flat_map(|path| path.warnings.iter().cloned()));

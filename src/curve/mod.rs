@@ -2,7 +2,8 @@
 //!
 //! A [`Scheme`] says which curve runs between two keys, given the neighbours on
 //! either side; [`Ends`] says what stands in for the neighbours the first and last
-//! segment lack; a [`Motion`] is one track's keys with both.
+//! segment lack; a [`Motion`] is one track's keys with both, or control rotations, which
+//! need neither.
 //!
 //! A further scheme is a file here, a line in `scheme.rs` and a page in docs/math.
 

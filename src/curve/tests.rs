@@ -334,3 +334,71 @@ fn rates_are_near_the_truth_where_steps_are_small() {
         }
     }
 }
+
+#[test]
+fn controls_are_the_product_of_exponentials() {
+    let controls = keys();
+    let motion = Motion::through_controls(&UNEVEN[..3], &controls);
+    assert_eq!((motion.ramp(), motion.times()), (None, &UNEVEN[..3]));
+    for (i, c) in [&controls[..4], &controls[3..]].into_iter().enumerate() {
+        let (start, h) = (UNEVEN[i], UNEVEN[i + 1] - UNEVEN[i]);
+        for k in 0..=20 {
+            let u = 0.05 * f64::from(k);
+            let basis = [1.0 - (1.0 - u).powi(3), 3.0 * u * u - 2.0 * u.powi(3), u.powi(3)];
+            let factor = |k: usize| Quat::exp((c[k].conjugate() * c[k + 1]).log() * basis[k]);
+            let expected = c[0] * factor(0) * factor(1) * factor(2);
+            // A piece's time, and so its u, is rounded; the steps turn by 3 rad in all.
+            assert!(distance(motion.at(start + u * h), expected) < 1e-14, "{i} {u}");
+        }
+    }
+}
+
+#[test]
+fn controls_are_met_at_the_ends_of_segments_only() {
+    let controls = keys();
+    let motion = Motion::through_controls(&UNEVEN[..3], &controls);
+    for (i, &t) in UNEVEN[..3].iter().enumerate() {
+        assert!(distance(motion.at(t), controls[3 * i]) < 1e-15);
+    }
+    assert_eq!(motion.at(-1.0), controls[0]);
+    assert_eq!(motion.at(9.0), controls[6]);
+    let nearest =
+        |c: Quat| (0..=1000).map(|k| motion.at(1e-3 * f64::from(k)).angle_to(c)).fold(4.0, f64::min);
+    assert!([1, 2, 4, 5].into_iter().all(|i| nearest(controls[i]) > 0.02));
+}
+
+#[test]
+fn controls_say_how_segments_leave_and_arrive() {
+    let controls = keys();
+    let step = |i: usize| (controls[i].conjugate() * controls[i + 1]).log();
+    let motion = Motion::through_controls(&UNEVEN[..3], &controls);
+    for i in 0..2 {
+        let piece = motion.piece(i, UNEVEN[i]);
+        let velocity = |u: f64| piece.at(Jet::variable(u)).half_velocity() * (1.0 / piece.duration());
+        let expected = |step: Vec3| step * (3.0 / (UNEVEN[i + 1] - UNEVEN[i]));
+        assert!((velocity(0.0) - expected(step(3 * i))).length() < 1e-13);
+        assert!((velocity(1.0) - expected(step(3 * i + 2))).length() < 1e-13);
+        for k in 0..=100 {
+            let (rates, jet) = (piece.rates(), piece.at(Jet::variable(0.01 * f64::from(k))));
+            assert!(jet.half_velocity().length() <= rates.speed + 1e-12);
+            assert!(jet.half_acceleration().length() <= rates.acceleration + 1e-12);
+        }
+    }
+}
+
+#[test]
+fn controls_on_one_axis_are_a_cubic_bezier_of_angles() {
+    let angles = [0.0, 0.9, -0.4, 1.1, 1.3, 0.2, 0.5];
+    let axis = Vec3::new(2.0 / 7.0, -3.0 / 7.0, 6.0 / 7.0);
+    let controls = angles.map(|a| Quat::exp(axis * a));
+    let motion = Motion::through_controls(&[1.0, 3.0, 3.5], &controls);
+    for (i, start, h) in [(0, 1.0, 2.0), (3, 3.0, 0.5)] {
+        for k in 0..=20 {
+            let u = 0.05 * f64::from(k);
+            let v = 1.0 - u;
+            let weights = [v * v * v, 3.0 * v * v * u, 3.0 * v * u * u, u * u * u];
+            let angle: f64 = (0..4).map(|k| weights[k] * angles[i + k]).sum();
+            assert!(distance(motion.at(start + h * u), Quat::exp(axis * angle)) < 1e-14);
+        }
+    }
+}

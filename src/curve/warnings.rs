@@ -2,56 +2,73 @@
 
 use super::bessel_overhauser::largest_power;
 use super::{Ends, Scheme, Smoothness};
-use crate::clip::{Clip, Warning};
+use crate::clip::Warning;
 use crate::math::Quat;
 use std::f64::consts::PI;
 
 /// Neighbouring intervals that differ by more than this are uneven.
 const UNEVEN: f64 = 1.05;
 
-/// Everything about `clip` that the scheme and the ends do not do well.
-pub fn warnings(clip: &Clip, scheme: Scheme, ends: Ends) -> Vec<Warning> {
-    if clip.times.len() == 2 || scheme == Scheme::Slerp {
-        return Vec::new(); // slerp, whatever was asked for
-    }
-    [uneven(clip, scheme, ends), wrapping(clip, scheme), held(clip, ends)].into_iter().flatten().collect()
+/// Keys in time, and how a message names the place of one.
+struct Keys<'a, T> {
+    times: &'a [f64],
+    tracks: &'a [T],
+    place: &'a dyn Fn(usize) -> String,
 }
 
-fn uneven(clip: &Clip, scheme: Scheme, ends: Ends) -> Option<Warning> {
+/// Everything about `tracks`, which have their keys at `times`, that the scheme and the
+/// ends do not do well. `place` says where key i stands, such as `t = 2.12 s (line 7)`.
+pub fn warnings(
+    times: &[f64],
+    tracks: &[impl AsRef<[Quat]>],
+    place: &dyn Fn(usize) -> String,
+    scheme: Scheme,
+    ends: Ends,
+) -> Vec<Warning> {
+    if times.len() == 2 || scheme == Scheme::Slerp {
+        return Vec::new(); // slerp, whatever was asked for
+    }
+    let keys = Keys { times, tracks, place };
+    [uneven(&keys, scheme, ends), wrapping(&keys, scheme), held(&keys, ends)].into_iter().flatten().collect()
+}
+
+fn uneven<T>(keys: &Keys<T>, scheme: Scheme, ends: Ends) -> Option<Warning> {
     if scheme.smoothness() != Smoothness::EvenKeys {
         return None;
     }
-    let times = &clip.times;
+    let times = keys.times;
     let ratio = |a: f64, b: f64| (a / b).max(b / a);
     let inner = (1..times.len() - 1).map(|i| (i, ratio(times[i] - times[i - 1], times[i + 1] - times[i])));
     let n = times.len();
-    let seam = (ends == Ends::Closed).then(|| (n - 1, ratio(times[n - 1] - times[n - 2], times[1])));
+    let seam =
+        (ends == Ends::Closed).then(|| (n - 1, ratio(times[n - 1] - times[n - 2], times[1] - times[0])));
     let (key, worst) = inner.chain(seam).max_by(|a, b| a.1.total_cmp(&b.1))?;
     (worst > UNEVEN).then(|| {
         let message = format!(
             "{} jumps in speed where keys are unevenly spaced, by up to {worst:.2} times at {}; \
              --scheme bessel does not",
             scheme.name(),
-            clip.place(key)
+            (keys.place)(key)
         );
         Warning::new("UNEVEN_KEYS", message)
     })
 }
 
 /// Keys at which a power of `bessel-overhauser` turns by more than 180°.
-fn wrapping(clip: &Clip, scheme: Scheme) -> Option<Warning> {
+fn wrapping<T: AsRef<[Quat]>>(keys: &Keys<T>, scheme: Scheme) -> Option<Warning> {
     if scheme != Scheme::BesselOverhauser {
         return None;
     }
-    let wraps = |keys: &[Quat], i: usize| {
-        let (h0, h1) = (clip.times[i] - clip.times[i - 1], clip.times[i + 1] - clip.times[i]);
-        largest_power(keys[i - 1], keys[i], keys[i + 1], h0, h1) > PI
+    let times = keys.times;
+    let wraps = |track: &T, i: usize| {
+        let (track, h0, h1) = (track.as_ref(), times[i] - times[i - 1], times[i + 1] - times[i]);
+        largest_power(track[i - 1], track[i], track[i + 1], h0, h1) > PI
     };
-    let inner = 1..clip.times.len() - 1;
-    let keys: Vec<usize> = inner.filter(|&i| clip.tracks.iter().any(|keys| wraps(keys, i))).collect();
-    let named: Vec<String> = keys.iter().take(3).map(|&i| clip.place(i)).collect();
-    let more = if keys.len() > 3 { format!(" and {} more", keys.len() - 3) } else { String::new() };
-    (!keys.is_empty()).then(|| {
+    let inner = 1..times.len() - 1;
+    let wrapping: Vec<usize> = inner.filter(|&i| keys.tracks.iter().any(|track| wraps(track, i))).collect();
+    let named: Vec<String> = wrapping.iter().take(3).map(|&i| (keys.place)(i)).collect();
+    let more = if wrapping.len() > 3 { format!(" and {} more", wrapping.len() - 3) } else { String::new() };
+    (!wrapping.is_empty()).then(|| {
         let message = format!(
             "bessel-overhauser may swing the wrong way at {}{more}: steps this large between keys this \
              unevenly spaced exceed half a turn; --scheme bessel does not",
@@ -61,13 +78,12 @@ fn wrapping(clip: &Clip, scheme: Scheme) -> Option<Warning> {
     })
 }
 
-fn held(clip: &Clip, ends: Ends) -> Option<Warning> {
+fn held<T>(keys: &Keys<T>, ends: Ends) -> Option<Warning> {
     (ends == Ends::Hold).then(|| {
-        let last = clip.times.len() - 1;
         let message = format!(
             "--ends hold rests at the first key, jumps at {} and never reaches the last key at {}",
-            clip.place(1),
-            clip.place(last)
+            (keys.place)(1),
+            (keys.place)(keys.times.len() - 1)
         );
         Warning::new("ENDS_HELD", message)
     })
@@ -76,7 +92,7 @@ fn held(clip: &Clip, ends: Ends) -> Option<Warning> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::clip::{Body, Lines};
+    use crate::clip::{Body, Clip, Lines};
     use crate::math::Vec3;
 
     /// A clip that turns about z by `degrees` at each key.
@@ -88,8 +104,12 @@ mod tests {
         Clip { body: Body::Free, start: 0.0, times: times.to_vec(), tracks: vec![track], lines }
     }
 
+    fn found(clip: &Clip, scheme: Scheme, ends: Ends) -> Vec<Warning> {
+        warnings(&clip.times, &clip.tracks, &|key| clip.place(key), scheme, ends)
+    }
+
     fn codes(clip: &Clip, scheme: Scheme, ends: Ends) -> Vec<&'static str> {
-        warnings(clip, scheme, ends).into_iter().map(|w| w.code).collect()
+        found(clip, scheme, ends).into_iter().map(|w| w.code).collect()
     }
 
     #[test]
@@ -97,7 +117,7 @@ mod tests {
         let clip = clip(&[0.0, 1.0, 3.0, 4.0], 20.0);
         for scheme in [Scheme::CatmullRom, Scheme::Squad] {
             assert_eq!(codes(&clip, scheme, Ends::Natural), ["UNEVEN_KEYS"]);
-            let text = &warnings(&clip, scheme, Ends::Natural)[0].message;
+            let text = &found(&clip, scheme, Ends::Natural)[0].message;
             assert!(text.contains("2.00 times") && text.contains("bessel"), "{text}");
         }
         for scheme in [Scheme::Slerp, Scheme::Bessel, Scheme::BesselOverhauser] {
@@ -116,7 +136,7 @@ mod tests {
     #[test]
     fn powers_beyond_half_a_turn_are_named() {
         let clip = clip(&[0.0, 1.0, 4.0, 7.0], 80.0);
-        let found = warnings(&clip, Scheme::BesselOverhauser, Ends::Natural);
+        let found = found(&clip, Scheme::BesselOverhauser, Ends::Natural);
         assert_eq!(found.len(), 1);
         assert!(found[0].message.contains("t = 1 s (line 3):"), "{}", found[0].message);
     }

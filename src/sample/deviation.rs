@@ -294,31 +294,37 @@ mod tests {
     #[test]
     fn bound_holds_and_is_tight() {
         let uneven = [0.0, 0.31, 0.97, 1.21, 2.0, 2.6, 3.4];
-        for (fps, key_times) in [("60", true), ("60", false), ("12", true), ("7", false)] {
-            for &scheme in Scheme::ALL {
-                for ends in [Ends::Natural, Ends::Clamped, Ends::Hold] {
-                    for step in [20.0, 70.0, 150.0] {
-                        let keys = keys(step, 7);
-                        let motion = Motion::new(&uneven, &keys, scheme, ends);
-                        let ramp = motion.ramp();
-                        let timeline = Timeline::new(&uneven, ramp, fps.parse().unwrap(), key_times).unwrap();
-                        let times: Vec<f32> =
-                            (0..timeline.chunks()).flat_map(|i| timeline.chunk(i).1).collect();
-                        let mut samples = Vec::new();
-                        let facts = rotations(&[Rotation::Motion(motion)], &timeline, |chunk| {
-                            samples.extend_from_slice(chunk);
-                            Ok::<(), ()>(())
-                        });
-                        let bound = facts.unwrap()[0].deviation.unwrap();
-                        let worst = measured(&motion, &times, &samples);
-                        let name = format!("{} {} {step}° {fps} {key_times}", scheme.name(), ends.name());
-                        assert!(bound >= worst, "{name}: bound {bound} < {worst}");
-                        // Forty probes an interval miss the peak by little; below float32's
-                        // rounding the bound is not refined.
-                        assert!(bound < 1.08 * worst + 3e-6, "{name}: bound {bound}, worst {worst}");
-                    }
+        for &scheme in Scheme::ALL {
+            for ends in [Ends::Natural, Ends::Clamped, Ends::Hold] {
+                for step in [20.0, 70.0, 150.0] {
+                    let keys = keys(step, 7);
+                    let motion = Motion::new(&uneven, &keys, scheme, ends);
+                    holds_and_is_tight(motion, &format!("{} {} {step}°", scheme.name(), ends.name()));
                 }
             }
+        }
+        for step in [5.0, 20.0, 70.0] {
+            let controls = keys(step, 19);
+            holds_and_is_tight(Motion::through_controls(&uneven, &controls), &format!("controls {step}°"));
+        }
+    }
+
+    fn holds_and_is_tight(motion: Motion, name: &str) {
+        for (fps, key_times) in [("60", true), ("60", false), ("12", true), ("7", false)] {
+            let fps_parsed = fps.parse().unwrap();
+            let timeline = Timeline::new(motion.times(), motion.ramp(), fps_parsed, key_times).unwrap();
+            let times: Vec<f32> = (0..timeline.chunks()).flat_map(|i| timeline.chunk(i).1).collect();
+            let mut samples = Vec::new();
+            let facts = rotations(&[Rotation::Motion(motion)], &timeline, |chunk| {
+                samples.extend_from_slice(chunk);
+                Ok::<(), ()>(())
+            });
+            let bound = facts.unwrap()[0].deviation.unwrap();
+            let worst = measured(&motion, &times, &samples);
+            assert!(bound >= worst, "{name} {fps} {key_times}: bound {bound} < {worst}");
+            // Forty probes an interval miss the peak by little; below float32's
+            // rounding the bound is not refined.
+            assert!(bound < 1.08 * worst + 3e-6, "{name} {fps} {key_times}: bound {bound}, worst {worst}");
         }
     }
 
