@@ -12,8 +12,8 @@ use crate::asset::{Asset, Error};
 use gltf::json::Root;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
-/// Extensions whose absence here changes no picture.
-const HARMLESS: [&str; 2] = ["KHR_mesh_quantization", "KHR_xmp_json_ld"];
+/// Extensions that are drawn, or whose absence changes no picture.
+const HARMLESS: [&str; 3] = ["KHR_materials_unlit", "KHR_mesh_quantization", "KHR_xmp_json_ld"];
 
 /// A file made ready to be posed.
 #[derive(Debug, Default)]

@@ -14,7 +14,7 @@ use std::fmt;
 pub(crate) enum Left {
     Skins,
     MorphTargets,
-    PointsAndLines,
+    Points,
 }
 
 impl fmt::Display for Left {
@@ -22,7 +22,7 @@ impl fmt::Display for Left {
         f.write_str(match self {
             Left::Skins => "skins (meshes rest)",
             Left::MorphTargets => "morph targets",
-            Left::PointsAndLines => "points and lines",
+            Left::Points => "points",
         })
     }
 }
@@ -51,11 +51,15 @@ pub(crate) fn part(
         Some(accessor) => asset.indices(accessor.value())?,
         None => (0..positions.len() as u32).collect(),
     };
-    let Some(triangles) = triangles(mode, &order) else {
-        left.insert(Left::PointsAndLines);
-        return Ok(None);
+    let (triangles, segments) = match (triangles(mode, &order), segments(mode, &order)) {
+        (Some(triangles), _) => (triangles, Vec::new()),
+        (None, Some(segments)) => (Vec::new(), segments),
+        (None, None) => {
+            left.insert(Left::Points);
+            return Ok(None);
+        }
     };
-    let (material, uv_set) = textures.material(asset, material.map(|m| m.value()));
+    let (mut material, uv_set) = textures.material(asset, material.map(|m| m.value()));
     let uv = uvs.get(uv_set).copied().flatten().filter(|_| material.texture.is_some());
     let mut raw = Raw { vertices: positions.iter().map(|p| plain(*p)).collect(), triangles };
     let has_normals = match normals {
@@ -67,6 +71,11 @@ pub(crate) fn part(
     }
     if let Some(accessor) = colours {
         raw.fill(&vertex_colours(asset, accessor)?, |v, c| v.colour = c);
+    }
+    if !segments.is_empty() {
+        raw.thicken(&segments);
+        // What has no surface has nothing for lamps to shine on.
+        material.unlit = true;
     }
     raw.drop_broken();
     if !has_normals {
@@ -131,6 +140,27 @@ fn triangles(mode: Checked<Mode>, order: &[u32]) -> Option<Vec<[u32; 3]>> {
     }
 }
 
+/// Ends of lines two by two; `None` for what is no line.
+fn segments(mode: Checked<Mode>, order: &[u32]) -> Option<Vec<[u32; 2]>> {
+    let steps = || order.windows(2).map(|w| [w[0], w[1]]);
+    match mode {
+        Checked::Valid(Mode::Lines) => Some(order.as_chunks().0.to_vec()),
+        Checked::Valid(Mode::LineStrip) => Some(steps().collect()),
+        Checked::Valid(Mode::LineLoop) => {
+            let close = order.first().zip(order.last()).map(|(first, last)| [*last, *first]);
+            Some(steps().chain(close).collect())
+        }
+        _ => None,
+    }
+}
+
+/// How thick lines are drawn, as a share of the largest extent of what they are part of.
+const THICKNESS: f64 = 0.004;
+
+/// Sine and cosine of thirds of a turn.
+const SIDES: [(f64, f64); 3] =
+    [(0.0, 1.0), (0.866_025_403_784_438_6, -0.5), (-0.866_025_403_784_438_6, -0.5)];
+
 /// A primitive on its way.
 struct Raw {
     vertices: Vec<Vertex>,
@@ -145,6 +175,30 @@ impl Raw {
             self.vertices.iter_mut().zip(values).for_each(|(v, value)| set(v, *value));
         }
         fits
+    }
+
+    /// Makes a three-sided rod of each line, for a line has no width of its own.
+    fn thicken(&mut self, segments: &[[u32; 2]]) {
+        let place = |vertex: &Vertex| Vec3::from(vertex.position).as_dvec3();
+        let at = |index: u32| self.vertices.get(index as usize).copied();
+        let ends: Vec<[Vertex; 2]> = segments.iter().filter_map(|&[a, b]| Some([at(a)?, at(b)?])).collect();
+        let places = ends.iter().flatten().map(place).filter(|p| p.is_finite());
+        let (low, high) =
+            places.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+        let radius = 0.5 * THICKNESS * (high - low).max_element();
+        self.vertices.clear();
+        for [a, b] in ends {
+            let Some(along) = (place(&b) - place(&a)).try_normalize() else { continue };
+            let (across, up) = along.any_orthonormal_pair();
+            let first = self.vertices.len() as u32;
+            for (side, (sin, cos)) in (0..).zip(SIDES) {
+                let off = radius * (across * cos + up * sin);
+                let moved = |v: Vertex| Vertex { position: (place(&v) + off).as_vec3().to_array(), ..v };
+                self.vertices.extend([moved(a), moved(b)]);
+                let (here, next) = (first + 2 * side, first + 2 * ((side + 1) % 3));
+                self.triangles.extend([[here, next, next + 1], [here, next + 1, here + 1]]);
+            }
+        }
     }
 
     /// Drops triangles with a corner that does not exist or is not finite.

@@ -43,11 +43,13 @@ pub(crate) struct Material {
     pub texture: Option<usize>,
     pub alpha: Alpha,
     pub double_sided: bool,
+    /// The same under any lamp.
+    pub unlit: bool,
 }
 
 impl Default for Material {
     fn default() -> Self {
-        Material { colour: [1.0; 4], texture: None, alpha: Alpha::Opaque, double_sided: false }
+        Material { colour: [1.0; 4], texture: None, alpha: Alpha::Opaque, double_sided: false, unlit: false }
     }
 }
 

@@ -39,7 +39,7 @@ impl Surface<'_> {
             Alpha::Opaque | Alpha::Mask(_) => 1.0,
             Alpha::Blend => colour[3],
         };
-        let bright = brightness(self.light, point.normal, facing);
+        let bright = if self.material.unlit { 1.0 } else { brightness(self.light, point.normal, facing) };
         let lit = |i: usize| (colour[i] * bright).min(1.0) * alpha;
         Some([lit(0), lit(1), lit(2), alpha])
     }

@@ -41,6 +41,7 @@ impl Textures {
             texture: None,
             alpha: alpha(stored),
             double_sided: stored.double_sided,
+            unlit: stored.extensions.as_ref().is_some_and(|extensions| extensions.unlit.is_some()),
         };
         let Some((texture, uv_set)) = reference else {
             return (material, 0);

@@ -21,6 +21,9 @@ override MASKED: bool = false;
 // Let what lies behind shine through.
 override BLENDED: bool = false;
 
+// The same under any lamp.
+override UNLIT: bool = false;
+
 struct Corner {
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
@@ -79,7 +82,8 @@ fn shade(point: Point, @builtin(front_facing) front: bool) -> @location(0) vec4f
         discard;
     }
     let alpha = select(1.0, colour.a, BLENDED);
-    let lit = min(colour.rgb * brightness(point.normal, front), vec3f(1.0));
+    let bright = select(brightness(point.normal, front), 1.0, UNLIT);
+    let lit = min(colour.rgb * bright, vec3f(1.0));
     return vec4f(lit * alpha, alpha);
 }
 

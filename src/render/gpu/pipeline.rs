@@ -15,6 +15,7 @@ pub(super) struct Kind {
     masked: bool,
     blended: bool,
     double_sided: bool,
+    unlit: bool,
     mirrored: bool,
 }
 
@@ -24,6 +25,7 @@ impl Kind {
             masked: matches!(material.alpha, Alpha::Mask(_)),
             blended: material.alpha == Alpha::Blend,
             double_sided: material.double_sided,
+            unlit: material.unlit,
             mirrored,
         }
     }
@@ -86,8 +88,8 @@ impl Pipelines {
     }
 
     fn make(&self, device: &wgpu::Device, kind: Kind) -> wgpu::RenderPipeline {
-        let constants =
-            [("MASKED", f64::from(u8::from(kind.masked))), ("BLENDED", f64::from(u8::from(kind.blended)))];
+        let constants = [("MASKED", kind.masked), ("BLENDED", kind.blended), ("UNLIT", kind.unlit)]
+            .map(|(name, so)| (name, f64::from(u8::from(so))));
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: None,
             layout: Some(&self.layout),

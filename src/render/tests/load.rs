@@ -217,12 +217,12 @@ fn a_broken_texture_is_named_and_the_rest_drawn() {
 fn what_is_not_drawn_is_said_in_one_line() {
     let mut file = plain_house();
     let primitive = file.json["meshes"][0]["primitives"][0].clone();
-    let mut lines = primitive.clone();
-    lines["mode"] = json!(1);
-    file.json["meshes"][0]["primitives"] = json!([primitive, lines]);
+    let mut points = primitive.clone();
+    points["mode"] = json!(0);
+    file.json["meshes"][0]["primitives"] = json!([primitive, points]);
     file.json["meshes"][0]["primitives"][0]["targets"] = json!([{}]);
     file.json["extensionsUsed"] = json!(["KHR_materials_clearcoat", "KHR_mesh_quantization"]);
-    let expected = "not drawn: morph targets, points and lines, KHR_materials_clearcoat";
+    let expected = "not drawn: morph targets, points, KHR_materials_clearcoat";
     assert_eq!(file.picture().notes, [expected]);
 }
 
