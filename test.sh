@@ -50,11 +50,15 @@ for ends in natural clamped repeat closed hold; do
 done
 mkdir "$out/paths"
 for path in fixtures/paths/*.dat; do
-  case "$path" in */euler-bezier.dat | */quat-bezier.dat) continue ;; esac
   "$dat2glb" convert "$path" -o "$out/paths/" -q
 done
 "$dat2glb" convert fixtures/keyframes/chain-even.dat --path fixtures/paths/flight.dat -o "$out/along.gltf" -q
-for kind in chain body flight bezier euler; do
+for wrap in "" --no-wrap; do
+  "$dat2glb" convert fixtures/paths/flight.dat -o "$out/scenery$wrap.glb" -q --repeat 3 $wrap --export-path \
+    --camera fixtures/paths/camera.dat,look-at=root --camera follow --camera keys \
+    --camera fixtures/paths/bezier.dat,rotation=fixtures/paths/euler-bezier.dat
+done
+for kind in chain body flight bezier camera euler; do
   "$dat2glb" example "$kind" | "$dat2glb" convert - -o "$out/$kind.glb" -q
 done
 node tests/validator/validate.mjs .tools/node_modules "$out"

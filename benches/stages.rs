@@ -87,13 +87,16 @@ fn sample(bencher: Bencher, scheme: &str) {
 fn write(bencher: Bencher, scheme: &str) {
     let keyframes = keyframes(4, 10_000);
     let options = Options {
+        quat_order: None,
+        cameras: Vec::new(),
+        path_colour: None,
         name: "bench".into(),
         inputs: vec!["bench.dat".into()],
         schemes: vec![Scheme::from_name(scheme).unwrap()],
         fps: Fps::DEFAULT,
         key_times: true,
     };
-    let inputs = Inputs { keyframes: Some(keyframes), path: None };
+    let inputs = Inputs { keyframes: Some(keyframes), path: None, cameras: Vec::new() };
     let ground = Ground::new(&inputs, Shape::default(), &options.schemes).unwrap();
     let plan = Plan::new(&ground, "bench.dat", &options).unwrap();
     bencher

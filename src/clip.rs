@@ -5,7 +5,8 @@ use crate::math::Quat;
 /// The rotations of one or more boxes at common key times.
 ///
 /// Times start at 0 and increase strictly; there are at least two. Every track has a
-/// key a time, of unit length, in the hemisphere of the one before it.
+/// key a time (of control rotations two more between two times), of unit length, in the
+/// hemisphere of the one before it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
     /// What the rotations turn.
@@ -16,6 +17,8 @@ pub struct Clip {
     pub times: Vec<f64>,
     /// One for each box, from the top of the chain down.
     pub tracks: Vec<Vec<Quat>>,
+    /// What the rotations are to the motion.
+    pub through: Through,
     /// Where the keys stand in the file.
     pub lines: Lines,
 }
@@ -32,6 +35,35 @@ pub enum Body {
     Free,
 }
 
+/// What rotations are to the motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Through {
+    /// Keys that it runs through, by a scheme.
+    #[default]
+    Keys,
+    /// Control rotations of cubic segments, 3n + 1 of them for n + 1 times; it runs
+    /// through every third.
+    Controls,
+}
+
+impl Through {
+    /// How many times so many rotations have.
+    pub fn times(self, rotations: usize) -> usize {
+        match self {
+            Through::Keys => rotations,
+            Through::Controls => rotations / 3 + 1,
+        }
+    }
+
+    /// Which rotation belongs to a time.
+    pub fn rotation(self, time: usize) -> usize {
+        match self {
+            Through::Keys => time,
+            Through::Controls => 3 * time,
+        }
+    }
+}
+
 impl Clip {
     /// Time from the first key to the last, seconds.
     pub fn duration(&self) -> f64 {
@@ -40,7 +72,12 @@ impl Clip {
 
     /// Where key `i` stands, for messages: `t = 2.12 s (line 7)`.
     pub fn place(&self, key: usize) -> String {
-        format!("t = {} s (line {})", self.start + self.times[key], self.lines.of(key))
+        format!("t = {} s (line {})", self.start + self.times[key], self.line(key))
+    }
+
+    /// The line of the rotation that the motion runs through at time `key`.
+    pub fn line(&self, key: usize) -> usize {
+        self.lines.of(self.through.rotation(key))
     }
 }
 

@@ -127,8 +127,10 @@ mod tests {
 
     fn inputs(text: &str) -> Inputs {
         match input("t.dat", text.as_bytes(), None).unwrap() {
-            Input::Keyframes(keyframes) => Inputs { keyframes: Some(keyframes), path: None },
-            Input::Path(path) => Inputs { keyframes: None, path: Some(path) },
+            Input::Keyframes(keyframes) => {
+                Inputs { keyframes: Some(keyframes), path: None, cameras: Vec::new() }
+            }
+            Input::Path(path) => Inputs { keyframes: None, path: Some(path), cameras: Vec::new() },
             other => panic!("{other:?}"),
         }
     }

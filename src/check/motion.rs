@@ -10,7 +10,7 @@ use crate::asset::{self, Asset};
 use crate::clip::Body;
 use crate::curve::{Ends, Scheme};
 use crate::math::Quat;
-use crate::moves::{self, Ground, Inputs, Move, Mover, Orient, Shape};
+use crate::moves::{self, Copies, Ground, Inputs, Move, Mover, Orient, Shape, Stream};
 use crate::orient::{Axis, Frame, Level};
 use crate::path::{Ease, PathEnds, Timing};
 use crate::read::Order;
@@ -101,6 +101,9 @@ struct Recipe {
     level_end: usize,
     model_forward: String,
     model_up: String,
+    repeat: usize,
+    delay: Option<f64>,
+    no_wrap: bool,
     inputs: Vec<Input>,
     deviation_degrees: Vec<Option<f64>>,
     deviation_units: Option<f64>,
@@ -124,6 +127,9 @@ impl Default for Recipe {
             level_end: 0,
             model_forward: "Z".into(),
             model_up: "Y".into(),
+            repeat: 1,
+            delay: None,
+            no_wrap: false,
             inputs: Vec::new(),
             deviation_degrees: Vec::new(),
             deviation_units: None,
@@ -159,6 +165,7 @@ impl Recipe {
             level: Level { start: self.level_start, end: self.level_end },
             model_forward: known(&self.model_forward, Axis::from_name)?,
             model_up: known(&self.model_up, Axis::from_name)?,
+            copies: Copies { count: self.repeat.max(1), delay: self.delay, wrap: !self.no_wrap },
         })
     }
 }
@@ -196,12 +203,14 @@ pub fn compare(
         if let Some(recipe) = &recipe {
             note_changed_inputs(&clip, recipe, inputs, report);
         }
-        let mut limits = Limits::new(recipe.as_ref(), given);
         let mut boxes = Vec::new();
-        for (mover, a_move) in ground.moves(scheme) {
-            let limit = limits.next(&a_move);
-            let keys = ground.knots();
-            boxes.extend(node(asset, &clip, &node_name(mover, inputs), keys, &a_move, limit, report)?);
+        for copy in 0..ground.stream().count {
+            let mut limits = Limits::new(recipe.as_ref(), given);
+            for (mover, a_move) in ground.moves(scheme) {
+                let limit = limits.next(&a_move);
+                let wanted = Wanted { node: node_name(mover, copy, inputs), copy, a_move, limit };
+                boxes.extend(node(asset, &clip, &ground, &wanted, report)?);
+            }
         }
         let (scheme, ends) = (scheme.name(), shape.ends.name());
         compared.push(ClipMotion { clip: name(&clip), scheme, ends, boxes });
@@ -262,19 +271,20 @@ fn name(clip: &Clip) -> String {
     clip.name.clone().unwrap_or_else(|| format!("animation {}", clip.animation))
 }
 
-/// The name of the node that a move belongs to.
-fn node_name(mover: Mover, inputs: &Inputs) -> String {
-    match (mover, &inputs.keyframes) {
+/// The name of the node that a move of a copy belongs to.
+fn node_name(mover: Mover, copy: usize, inputs: &Inputs) -> String {
+    let name = match (mover, &inputs.keyframes) {
         (Mover::Root, _) => "root".to_owned(),
         (Mover::Track(_), Some(keyframes)) if keyframes.clip.body == Body::Free => "body".to_owned(),
         (Mover::Track(track), _) => format!("box{}", track + 1),
-    }
+    };
+    if copy == 0 { name } else { format!("{name}-{}", copy + 1) }
 }
 
 fn note_changed_inputs(clip: &Clip, recipe: &Recipe, inputs: &Inputs, report: &mut Report) {
-    let hashes = inputs.keyframes.as_ref().map(|k| &k.hash).into_iter();
-    let hashes = hashes.chain(inputs.path.as_ref().map(|path| &path.hash));
-    for (input, hash) in recipe.inputs.iter().zip(hashes).filter(|(input, hash)| input.blake3 != **hash) {
+    for (input, hash) in
+        recipe.inputs.iter().zip(inputs.hashes()).filter(|(input, hash)| input.blake3 != *hash)
+    {
         let message = format!(
             "clip {} was made from an input ({}) whose BLAKE3 hash begins with {:.12}; this one's begins with \
              {hash:.12}; convert again if the new input is the one that is meant",
@@ -286,43 +296,46 @@ fn note_changed_inputs(clip: &Clip, recipe: &Recipe, inputs: &Inputs, report: &m
     }
 }
 
+/// What a node of the file should do.
+struct Wanted<'a> {
+    node: String,
+    copy: usize,
+    a_move: Move<'a>,
+    limit: Option<f64>,
+}
+
 fn node(
     asset: &mut Asset,
     clip: &Clip,
-    wanted: &str,
-    keys: &[f64],
-    a_move: &Move,
-    limit: Option<f64>,
+    ground: &Ground,
+    wanted: &Wanted,
     report: &mut Report,
 ) -> Result<Option<NodeMotion>, Error> {
     let place = format!("/animations/{}", clip.animation);
-    let found = asset.root().nodes.iter().position(|node| node.name.as_deref() == Some(wanted));
+    let Wanted { node, copy, a_move, limit } = wanted;
+    let found = asset.root().nodes.iter().position(|n| n.name.as_deref() == Some(node.as_str()));
     let Some(index) = found else {
-        let message = format!("expected a node named {wanted}, which the input moves, found none");
+        let message = format!("expected a node named {node}, which the input moves, found none");
         report.add(Code::MotionDiffers, place, message);
         return Ok(None);
     };
-    // The file ends at a float32 time: keys beyond it are compared there.
-    let keys: Vec<f64> = keys.iter().map(|&t| t.min(clip.duration)).collect();
+    let stream = ground.stream();
+    let keys = keys(ground.knots(), stream, *copy, clip.duration);
+    let turned = |t: f64| Quat::to_xyzw(stream.rotation(stream.moment(*copy, t), |t| a_move.turned(t)));
     let (property, unit, difference) = match a_move {
-        Move::Keys(motion) => {
-            let curve = |t: f64| Quat::to_xyzw(motion.at(t));
-            ("rotation", "°", against::rotation(asset, clip, index, &keys, &curve)?)
-        }
-        Move::Attitude(at) => {
-            let curve = |t: f64| Quat::to_xyzw(at(t));
-            ("rotation", "°", against::rotation(asset, clip, index, &keys, &curve)?)
+        Move::Keys(_) | Move::Attitude(_) => {
+            ("rotation", "°", against::rotation(asset, clip, index, &keys, &turned)?)
         }
         Move::Travel(travel) => {
-            let curve = |t: f64| travel.at(t).to_array();
-            ("translation", " units", against::translation(asset, clip, index, &keys, &curve)?)
+            let at = |t: f64| stream.place(stream.moment(*copy, t), |t| travel.at(t)).to_array();
+            ("translation", " units", against::translation(asset, clip, index, &keys, &at)?)
         }
     };
     let worst = difference.largest();
     // Written so that a value that is no number exceeds every limit.
     if let Some(limit) = limit.filter(|&limit| worst.off.is_nan() || worst.off > limit) {
         let message = format!(
-            "clip {}, {property} of node {wanted}: playback is up to {:.6}{unit} off the curve, at {:.6} s; at \
+            "clip {}, {property} of node {node}: playback is up to {:.6}{unit} off the curve, at {:.6} s; at \
              most {limit:.6}{unit} is allowed",
             name(clip),
             worst.off,
@@ -330,5 +343,20 @@ fn node(
         );
         report.add(Code::MotionDiffers, place, message);
     }
-    Ok(Some(NodeMotion { node: wanted.to_owned(), property, limit, difference }))
+    Ok(Some(NodeMotion { node: node.clone(), property, limit: *limit, difference }))
+}
+
+/// When a copy passes the knots of the way, in order. The file ends at a float32 time:
+/// what lies beyond it is compared there.
+fn keys(knots: &[f64], stream: &Stream, copy: usize, end: f64) -> Vec<f64> {
+    let phase = if stream.wraps() { stream.phase(copy) } else { 0.0 };
+    let time = |&knot: &f64| match copy {
+        0 => knot,
+        // As float32 times have them: within a ramp a little makes much.
+        _ if phase > 0.0 && knot >= phase => f64::from((knot - phase) as f32),
+        _ => knot + stream.start(copy),
+    };
+    let mut keys: Vec<f64> = knots.iter().map(time).map(|t| t.min(end)).collect();
+    keys.sort_by(f64::total_cmp);
+    keys
 }

@@ -1,14 +1,16 @@
 //! The command line: commands, options, help.
 
+use super::camera::CameraSpec;
 use clap::builder::{PossibleValue, TypedValueParser, ValueParser};
 use clap::{Args, Parser, Subcommand, ValueHint};
 use dat2glb::curve::{Ends, Scheme};
-use dat2glb::moves::{Orient, Shape};
+use dat2glb::moves::{Copies, Orient, Shape};
 use dat2glb::orient::{Axis, Frame, Level};
 use dat2glb::path::{Ease, PathEnds, Timing};
 use dat2glb::read::Order;
 use dat2glb::sample::Fps;
 use dat2glb::table::Notation;
+use dat2glb::write::Colour;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
@@ -78,6 +80,9 @@ pub(crate) struct Convert {
     /// Whose x, y and z the numbers of a path or of Euler angles are; overrides the header
     #[arg(long, value_parser = frame())]
     pub(crate) frame: Option<Frame>,
+    /// Convert again whenever an input changes, until interrupted
+    #[arg(long)]
+    pub(crate) watch: bool,
     /// Leave the key times out: an even grid of samples, which may miss the keys
     #[arg(long)]
     pub(crate) no_key_times: bool,
@@ -99,6 +104,8 @@ pub(crate) struct Convert {
     pub(crate) quiet: bool,
     #[command(flatten, next_help_heading = "Paths")]
     pub(crate) along: Along,
+    #[command(flatten, next_help_heading = "Cameras, copies, and the path itself")]
+    pub(crate) scenery: Scenery,
 }
 
 impl Convert {
@@ -254,6 +261,8 @@ pub(crate) enum Kind {
     Flight,
     /// Control points of a Bézier path
     Bezier,
+    /// A Bézier path for a camera that watches the flight
+    Camera,
     /// Roll, pitch and yaw in degrees
     Euler,
 }
@@ -285,6 +294,52 @@ fn renderer_named(name: &str) -> Option<dat2glb::render::Renderer> {
         "wgpu" => Some(Renderer::Wgpu),
         "cpu" => Some(Renderer::Cpu),
         _ => None,
+    }
+}
+
+/// What there is beside the object.
+#[derive(Args, Debug)]
+pub(crate) struct Scenery {
+    /// Add a camera; may be said several times.
+    /// `PATH.dat[,look-at=root|X:Y:Z][,rotation=FILE]`: on a path of its own, looking ahead, at
+    /// the object, at a point, or by rotations of its own. `follow[,offset=X:Y:Z]`: behind and
+    /// above the object. `keys`: a still one beside each key point
+    #[arg(long = "camera", value_name = "SPEC", value_parser = clap::value_parser!(CameraSpec), verbatim_doc_comment)]
+    pub(crate) cameras: Vec<CameraSpec>,
+    /// Send so many objects along the path, one after another
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    repeat: Option<u32>,
+    /// Seconds from one object to the next; without it evenly over the path
+    #[arg(long, value_name = "SECONDS", requires = "repeat", allow_negative_numbers = true, value_parser = positive)]
+    delay: Option<f64>,
+    /// Hide each object until it starts, instead of wrapping all into one loop; the clip
+    /// gets longer
+    #[arg(long, requires = "repeat")]
+    no_wrap: bool,
+    /// Show the path too: as a line, with its control points and their polygon
+    #[arg(long)]
+    export_path: bool,
+    /// What the colours of the line tell
+    #[arg(long, default_value = "time", requires = "export_path", value_parser = named(Colour::from_name, vec![
+        ("time", "when the path passes: dark early, light late"),
+        ("depth", "how far along Z: dark behind, light in front"),
+    ]))]
+    color: Colour,
+}
+
+impl Scenery {
+    pub(crate) fn copies(&self) -> Copies {
+        Copies { count: self.repeat.map_or(1, |n| n as usize), delay: self.delay, wrap: !self.no_wrap }
+    }
+
+    /// How the path is drawn, if it is.
+    pub(crate) fn path_colour(&self) -> Option<Colour> {
+        self.export_path.then_some(self.color)
+    }
+
+    /// Whether anything is asked for that only a path can have.
+    pub(crate) fn needs_path(&self) -> bool {
+        self.repeat.is_some() || self.export_path
     }
 }
 
@@ -378,6 +433,7 @@ impl Along {
             level: Level { start: self.level_start, end: self.level_end },
             model_forward: self.model_forward,
             model_up: self.model_up,
+            copies: Copies::default(),
         }
     }
 

@@ -1,6 +1,7 @@
 //! `dat2glb convert`: every input through all stages, one after another.
 
 use super::args::Convert;
+use super::camera::CameraSpec;
 use super::exit::{Exit, Failure};
 use super::files::{self, Beside, display_name, is_standard};
 use super::output::Output;
@@ -9,6 +10,7 @@ use super::summary::Summary;
 use dat2glb::asset::{Asset, Resolve, Source};
 use dat2glb::check::{self, Report, Severity};
 use dat2glb::convert::{ClipFacts, Options, Plan};
+use dat2glb::moves::Shape;
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Cursor, Seek, Write};
@@ -20,25 +22,50 @@ const WRITE_BUFFER: usize = 1 << 20;
 
 pub(super) fn run(options: &Convert) -> Result<Exit, Failure> {
     let jobs = jobs(options)?;
+    if options.watch {
+        return watch(&jobs, options);
+    }
     let mut worst = Exit::Done;
     for job in &jobs {
-        match convert(job, options) {
-            Ok(()) => {}
-            Err(failure) => {
-                failure.print();
-                if options.json {
-                    super::summary::print_failure(&job.input, &failure)?;
-                }
-                worst = worst.max(failure.exit);
-            }
-        }
+        worst = worst.max(tell(job, options)?);
     }
     Ok(worst)
+}
+
+/// Converts, and says so if that fails.
+fn tell(job: &Job, options: &Convert) -> Result<Exit, Failure> {
+    let Err(failure) = convert(job, options) else { return Ok(Exit::Done) };
+    failure.print();
+    if options.json {
+        super::summary::print_failure(&job.input, &failure)?;
+    }
+    Ok(failure.exit)
+}
+
+/// Converts, and again whatever has changed, until interrupted.
+fn watch(jobs: &[Job], options: &Convert) -> Result<Exit, Failure> {
+    let mut files: Vec<PathBuf> = jobs.iter().flat_map(|job| job.read.clone()).collect();
+    files.sort();
+    files.dedup();
+    if files.iter().chain(jobs.iter().map(|job| &job.output)).any(|file| is_standard(file)) {
+        return Err(Failure::usage(
+            "expected files to watch and to write, found '-', standard input or output",
+        ));
+    }
+    super::watch::watch(&files, |changed| {
+        for job in jobs.iter().filter(|job| job.read.iter().any(|file| changed.contains(file))) {
+            // A reader of standard output who left has no need to be told.
+            let _ = tell(job, options);
+        }
+    })?;
+    Ok(Exit::Done)
 }
 
 /// One input and where its outputs go.
 struct Job {
     input: PathBuf,
+    /// All files that are read, the input included.
+    read: Vec<PathBuf>,
     output: PathBuf,
     thumbnail: Option<PathBuf>,
 }
@@ -71,9 +98,16 @@ fn jobs(options: &Convert) -> Result<Vec<Job>, Failure> {
             let (a, b, output) = (twin.input.display(), input.display(), output.display());
             return Err(Failure::usage(format!("{a} and {b} would both become {output}")));
         }
-        jobs.push(Job { input: input.clone(), output, thumbnail });
+        let read = files_read(input, options);
+        jobs.push(Job { input: input.clone(), read, output, thumbnail });
     }
     Ok(jobs)
+}
+
+fn files_read(input: &Path, options: &Convert) -> Vec<PathBuf> {
+    let cameras = options.scenery.cameras.iter().flat_map(CameraSpec::files);
+    let all = std::iter::once(input).chain(options.path.as_deref()).chain(cameras);
+    all.map(Path::to_owned).collect()
 }
 
 fn is_folder(path: &Path) -> bool {
@@ -123,16 +157,26 @@ fn convert(job: &Job, options: &Convert) -> Result<(), Failure> {
     let started = Instant::now();
     let name = display_name(&job.input);
     let paths: Vec<&Path> = std::iter::once(&job.input).chain(&options.path).map(PathBuf::as_path).collect();
-    let gathered = files::gather(&paths, options.order.order, options.frame)?;
+    let mut gathered = files::gather(&paths, options.order.order, options.frame)?;
+    for camera in &options.scenery.cameras {
+        gathered.add(camera, options.frame)?;
+    }
     let recipe = Options {
         name: stem(&job.input),
         inputs: gathered.names.clone(),
+        quat_order: options.order.order,
+        cameras: options.scenery.cameras.iter().map(|camera| camera.said.clone()).collect(),
+        path_colour: options.scenery.path_colour(),
         schemes: options.schemes(),
         fps: options.fps,
         key_times: !options.no_key_times,
     };
-    let shape = options.along.shape(options.ends, options.time_scale, options.frame);
-    let ground = gathered.ground(&name, &options.along, shape, &recipe.schemes)?;
+    let shape = Shape {
+        copies: options.scenery.copies(),
+        ..options.along.shape(options.ends, options.time_scale, options.frame)
+    };
+    let along = options.along.is_asked() || options.scenery.needs_path();
+    let ground = gathered.ground(&name, along, shape, &recipe.schemes)?;
     let plan = Plan::new(&ground, &name, &recipe).map_err(|error| Failure::refused(error.to_string()))?;
     let mut written =
         if is_gltf(&job.output) { gltf(job, &plan, options)? } else { glb(job, &plan, options)? };
@@ -161,11 +205,7 @@ struct Written {
 }
 
 fn begin(job: &Job) -> Result<Output, Failure> {
-    if is_standard(&job.output) {
-        Output::standard_output()
-    } else {
-        Output::create(&job.output, std::slice::from_ref(&job.input))
-    }
+    if is_standard(&job.output) { Output::standard_output() } else { Output::create(&job.output, &job.read) }
 }
 
 fn glb(job: &Job, plan: &Plan, options: &Convert) -> Result<Written, Failure> {
@@ -185,8 +225,7 @@ fn gltf(job: &Job, plan: &Plan, options: &Convert) -> Result<Written, Failure> {
     let failed = |error| writing(job, error);
     // The .bin's name is known once its content is; until then any name in the folder
     // will do, for it is written aside.
-    let inputs = std::slice::from_ref(&job.input);
-    let mut bin = Output::create(&job.output.with_extension("bin"), inputs)?;
+    let mut bin = Output::create(&job.output.with_extension("bin"), &job.read)?;
     let main = begin(job)?;
     let mut progress = Progress::new(plan.samples(), options.quiet);
     let buffered = BufWriter::with_capacity(WRITE_BUFFER, bin.file());
@@ -256,7 +295,7 @@ fn thumbnail_path(_: &Convert) -> Option<&PathBuf> {
 /// Draws the thumbnail that was asked for, from what was loaded back.
 fn draw(job: &Job, options: &Convert, written: &mut Written) -> Result<Option<Output>, Failure> {
     let Some(path) = &job.thumbnail else { return Ok(None) };
-    let output = Output::create(path, std::slice::from_ref(&job.input))?;
+    let output = Output::create(path, &job.read)?;
     let png = picture(&mut written.asset, &job.output, options.quiet)?;
     output.file().write_all(&png).map_err(|error| writing(job, error))?;
     Ok(Some(output))

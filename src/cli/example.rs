@@ -10,6 +10,7 @@ pub(super) fn run(options: &Example) -> Result<Exit, Failure> {
         Kind::Body => include_str!("examples/body.dat"),
         Kind::Flight => include_str!("examples/flight.dat"),
         Kind::Bezier => include_str!("examples/bezier.dat"),
+        Kind::Camera => include_str!("examples/camera.dat"),
         Kind::Euler => include_str!("examples/euler.dat"),
     };
     shown(std::io::stdout().write_all(text.as_bytes()))?;

@@ -1,10 +1,10 @@
 //! Opening what the command line names.
 
-use super::args::Along;
+use super::camera::CameraSpec;
 use super::exit::Failure;
 use dat2glb::asset::{self, Asset, Resolve, Source};
 use dat2glb::curve::Scheme;
-use dat2glb::moves::{self, Ground, Inputs, Shape, euler_keys};
+use dat2glb::moves::{self, Ground, Inputs, Shape, rotation_keys};
 use dat2glb::orient::Frame;
 use dat2glb::path;
 use dat2glb::read::{self, Input, Order};
@@ -44,7 +44,7 @@ pub(super) fn gather(
     order: Option<Order>,
     frame: Option<Frame>,
 ) -> Result<Gathered, Failure> {
-    let mut inputs = Inputs { keyframes: None, path: None };
+    let mut inputs = Inputs { keyframes: None, path: None, cameras: Vec::new() };
     let (mut given, mut names) = (frame, Vec::new());
     for path in paths {
         let name = display_name(path);
@@ -61,8 +61,7 @@ pub(super) fn gather(
             Input::Keyframes(keyframes) => inputs.keyframes = Some(keyframes),
             Input::Rotations(file) => {
                 given = given.or(file.frame).or(Some(file.rotations.usual_frame()));
-                let keys = euler_keys(file, frame);
-                inputs.keyframes = Some(keys.map_err(|error| Failure::refused(format!("{name}: {error}")))?);
+                inputs.keyframes = Some(rotation_keys(file, frame));
             }
             _ => return Err(Failure::refused(format!("{name}: this kind of input cannot be converted"))),
         }
@@ -72,15 +71,23 @@ pub(super) fn gather(
 }
 
 impl Gathered {
-    /// The inputs on one clock, shaped by the options; `name` is what messages are about.
+    /// Adds a camera, and the names of its files.
+    pub(super) fn add(&mut self, camera: &CameraSpec, frame: Option<Frame>) -> Result<(), Failure> {
+        self.inputs.cameras.push(camera.read(frame)?);
+        self.names.extend(camera.files().into_iter().map(short_name));
+        Ok(())
+    }
+
+    /// The inputs on one clock, shaped by the options; `name` is what messages are about,
+    /// `along` whether something is asked for that only a path can have.
     pub(super) fn ground(
         &self,
         name: &str,
-        along: &Along,
+        along: bool,
         shape: Shape,
         schemes: &[Scheme],
     ) -> Result<Ground<'_>, Failure> {
-        if self.inputs.path.is_none() && along.is_asked() {
+        if self.inputs.path.is_none() && along {
             let problem = "options of a path are given, but no path: say --path PATH.dat";
             return Err(Failure::usage(format!("{name}: {problem}")));
         }
@@ -88,7 +95,9 @@ impl Gathered {
             let message = format!("{name}: {error}");
             match error {
                 // Wrong whatever the input.
-                moves::Error::Model(_) | moves::Error::Path(path::Error::Ease) => Failure::usage(message),
+                moves::Error::Model(_)
+                | moves::Error::NoKeyPoints
+                | moves::Error::Path(path::Error::Ease) => Failure::usage(message),
                 _ => Failure::refused(message),
             }
         })

@@ -1,6 +1,7 @@
 //! What the command line adds to the library: arguments, files, messages, exit codes.
 
 mod args;
+mod camera;
 mod check;
 mod convert;
 mod example;
@@ -13,6 +14,7 @@ mod sample;
 mod summary;
 #[cfg(feature = "render")]
 mod thumbnail;
+mod watch;
 
 use args::{Cli, Command};
 use clap::{CommandFactory, Parser};

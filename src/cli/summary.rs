@@ -24,13 +24,23 @@ pub(super) struct Summary<'a> {
     /// Points of the path.
     points: usize,
     seconds: f64,
-    /// Poses in all clips together: of each box, and of what goes along the path.
+    /// Poses in all clips together: of each box, and of what goes along the path, copies
+    /// included.
     samples: u64,
     bytes: u64,
     elapsed_seconds: f64,
     blender_end_frame: u64,
     clips: &'a [ClipFacts],
+    /// What ends before the clip does, and holds its last value.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    holds: Vec<Held>,
     warnings: &'a [Warning],
+}
+
+#[derive(Serialize)]
+struct Held {
+    what: &'static str,
+    seconds: f64,
 }
 
 impl<'a> Summary<'a> {
@@ -47,7 +57,7 @@ impl<'a> Summary<'a> {
         let keyframes = inputs.keyframes.as_ref().map(|keyframes| &keyframes.clip);
         let points = inputs.path.as_ref().map_or(0, |path| path.points.len());
         let boxes = keyframes.map_or(0, |clip| clip.tracks.len());
-        let moving = boxes + usize::from(points > 0);
+        let moving = (boxes + usize::from(points > 0)) * ground.stream().count;
         Summary {
             schema: 1,
             input,
@@ -61,6 +71,7 @@ impl<'a> Summary<'a> {
             elapsed_seconds: elapsed.as_secs_f64(),
             blender_end_frame: (ground.duration() * BLENDER_FPS).ceil() as u64 + 1,
             clips,
+            holds: ground.holds().into_iter().map(|(what, seconds)| Held { what, seconds }).collect(),
             warnings,
         }
     }
@@ -80,6 +91,9 @@ impl<'a> Summary<'a> {
                 say(&format!("warning: {}: {message} [{code}]", self.input));
             }
             say(&self.line());
+            for Held { what, seconds } in &self.holds {
+                say(&format!("{what} end at {} s and hold their last value", rounded(*seconds)));
+            }
         }
         Ok(())
     }
@@ -110,12 +124,17 @@ impl<'a> Summary<'a> {
              Blender: set the scene's end to frame {} at {BLENDER_FPS} fps",
             self.output,
             parts.join(", "),
-            (self.seconds * 1e6).round() / 1e6,
+            rounded(self.seconds),
             size(self.bytes),
             self.elapsed_seconds,
             self.blender_end_frame
         )
     }
+}
+
+/// Seconds for people.
+fn rounded(seconds: f64) -> f64 {
+    (seconds * 1e6).round() / 1e6
 }
 
 /// Bytes for people.

@@ -22,29 +22,99 @@ pub struct ClipFacts {
     pub deviation_units: Option<f64>,
     /// The largest turn from sample to sample, degrees.
     pub largest_step_degrees: f64,
+    /// Of each camera that moves.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub cameras: Vec<CameraFacts>,
     /// The same by rotation: boxes, then the root.
     #[serde(skip)]
     pub tracks: Vec<TrackFacts>,
 }
 
+/// How well a camera follows its curves.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct CameraFacts {
+    /// Name of its node.
+    pub name: String,
+    /// An upper bound of the angle between playback and curve, degrees; null where
+    /// nothing is known between samples.
+    pub deviation_degrees: Option<f64>,
+    /// An upper bound of the distance between playback and path.
+    pub deviation_units: f64,
+}
+
+/// What sampling a clip found out.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Found {
+    pub(super) object: Seen,
+    pub(super) cameras: Seen,
+}
+
+/// What sampling some moves found out, in their order.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Seen {
+    pub(super) tracks: Vec<TrackFacts>,
+    /// Upper bounds of the distance between playback and path.
+    pub(super) distances: Vec<f64>,
+}
+
+/// What copies add, whose times are rounded once more: by rotation, and along the path.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Late {
+    pub(super) degrees: Vec<Option<f64>>,
+    pub(super) units: f64,
+}
+
+impl Found {
+    /// Figures of the most digits.
+    pub(super) fn widest(tracks: usize, paths: usize, cameras: usize) -> Found {
+        let widest = TrackFacts { deviation: Some(-f64::MIN_POSITIVE), ..TrackFacts::default() };
+        let seen =
+            |tracks, paths| Seen { tracks: vec![widest; tracks], distances: vec![-f64::MIN_POSITIVE; paths] };
+        Found { object: seen(tracks, paths), cameras: seen(cameras, cameras) }
+    }
+
+    pub(super) fn of(&mut self, cameras: bool) -> &mut Seen {
+        if cameras { &mut self.cameras } else { &mut self.object }
+    }
+
+    /// With what copies add.
+    pub(super) fn late(mut self, late: &Late) -> Found {
+        for (track, degrees) in self.object.tracks.iter_mut().zip(&late.degrees) {
+            track.deviation = track.deviation.zip(*degrees).map(|(deviation, late)| deviation + late);
+        }
+        self.object.distances.iter_mut().for_each(|distance| *distance += late.units);
+        self
+    }
+}
+
 impl ClipFacts {
+    /// `cameras`: the names of those that move.
     pub(super) fn new(
         name: String,
         scheme: &'static str,
         samples: u64,
-        tracks: Vec<TrackFacts>,
-        distance: Option<f64>,
+        found: Found,
+        cameras: Vec<String>,
     ) -> ClipFacts {
+        let Found { object: Seen { tracks, distances }, cameras: watched } = found;
         let deviations: Option<Vec<f64>> = tracks.iter().map(|track| track.deviation).collect();
         let largest = |values: Vec<f64>| values.into_iter().fold(0.0, f64::max);
         let turns = deviations.filter(|all| !all.is_empty());
+        let cameras = cameras.into_iter().zip(watched.tracks.iter().zip(watched.distances));
+        let camera = |(name, (track, distance)): (String, (&TrackFacts, f64))| CameraFacts {
+            name,
+            deviation_degrees: track.deviation.map(rounded_up),
+            deviation_units: rounded_up(distance),
+        };
         ClipFacts {
             name,
             scheme,
             samples,
             deviation_degrees: turns.map(|all| rounded_up(largest(all))),
-            deviation_units: distance.map(rounded_up),
+            deviation_units: distances.first().copied().map(rounded_up),
             largest_step_degrees: largest(tracks.iter().map(|track| track.steps.worst).collect()),
+            cameras: cameras.map(camera).collect(),
             tracks,
         }
     }

@@ -3,18 +3,23 @@
 //! A [`Plan`] knows everything about the output but the samples: what will be warned
 //! about, and how large it becomes. Writing it streams; memory holds the keys.
 
+mod error;
 mod facts;
+mod layout;
 mod recipe;
+mod scene;
 
-pub use facts::ClipFacts;
+pub use error::Error;
+pub use facts::{CameraFacts, ClipFacts};
 
-use crate::clip::{Clip, Warning};
+use crate::clip::{Clip, Through, Warning};
 use crate::curve::{self, Scheme};
 use crate::moves::{Ground, Move, Mover};
-use crate::sample::{self, Fps, Rotation, Timeline, TooFine, TrackFacts};
-use crate::write::{
-    Animation, Bin, Buffer, Channel, Data, Glb, LARGEST_GLB, Property, Scene, document, glb_size,
-};
+use crate::read::Order;
+use crate::sample::{Fps, Timeline, TooFine};
+use crate::write::{Animation, Bin, Buffer, Colour, Glb, LARGEST_GLB, Scene, document, glb_size};
+use facts::Found;
+use layout::Layout;
 use recipe::recipe;
 use std::io::{self, Seek, Write};
 
@@ -23,62 +28,20 @@ use std::io::{self, Seek, Write};
 pub struct Options {
     /// Name of the animations; with several schemes each adds its own.
     pub name: String,
-    /// The inputs' names as the file keeps them: keyframes, then path.
+    /// The inputs' names as the file keeps them: keyframes, then path, then cameras'.
     pub inputs: Vec<String>,
+    /// The order of a quaternion's parts that was asked for, whatever headers say.
+    pub quat_order: Option<Order>,
+    /// What was asked of each camera, as the file keeps it.
+    pub cameras: Vec<String>,
+    /// How the path is drawn, if it is.
+    pub path_colour: Option<Colour>,
     /// One animation a scheme.
     pub schemes: Vec<Scheme>,
     /// Samples per second.
     pub fps: Fps,
     /// Whether every key time is a sample too.
     pub key_times: bool,
-}
-
-/// Why keyframes and options make no file.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum Error {
-    /// Frames that float32 cannot tell apart.
-    #[error("{0}: {1}")]
-    TooFine(String, TooFine),
-    /// Keys that float32 cannot tell apart.
-    #[error(
-        "{source_name}:{}: the keys in lines {} and {} are so close that float32, glTF's number for times, \
-         cannot tell them apart {seconds} s after the first key; leave one of them out{}",
-        .lines.1, .lines.0, .lines.1, if *.key_times { ", or say --no-key-times" } else { "" }
-    )]
-    KeysTooClose {
-        /// The input's name.
-        source_name: String,
-        /// The lines of both.
-        lines: (usize, usize),
-        /// When the first of them is, from the first key on.
-        seconds: f64,
-        /// Whether leaving the key times out helps.
-        key_times: bool,
-    },
-    /// More than a .glb can hold.
-    #[error(
-        "{source_name}: the output would have {:.2} GiB, and a .glb ends at 4 GiB; {}{}write a .gltf",
-        *.bytes as f64 / (1u64 << 30) as f64, advice(*.largest_fps, *.key_times),
-        if *.several_schemes { "choose fewer schemes, or " } else { "or " }
-    )]
-    TooLarge {
-        /// The input's name.
-        source_name: String,
-        /// How large it would be.
-        bytes: u64,
-        /// A rate at which it fits, if there is one.
-        largest_fps: Option<Fps>,
-        /// Whether it fits with the key times.
-        key_times: bool,
-        /// Whether there are schemes to leave out.
-        several_schemes: bool,
-    },
-}
-
-fn advice(largest_fps: Option<Fps>, key_times: bool) -> String {
-    let flag = if key_times { "" } else { " with --no-key-times" };
-    largest_fps.map_or(String::new(), |fps| format!("sample at --fps {fps} or less{flag}, "))
 }
 
 /// An output that is known but for its samples.
@@ -95,15 +58,25 @@ pub struct Plan<'a> {
 /// One clip: what every node does by a scheme, and when it is sampled.
 struct ClipPlan<'a> {
     scheme: Scheme,
-    moves: Vec<(Mover, Move<'a>)>,
-    timeline: Timeline<'a>,
+    object: Group<'a, Mover>,
+    /// Cameras that move.
+    cameras: Option<Group<'a, usize>>,
 }
 
 impl ClipPlan<'_> {
-    /// Bytes of one sample of everything, its time too.
-    fn sample_size(&self) -> u64 {
-        4 + self.moves.iter().map(size).sum::<u64>()
+    /// What would be found out if all figures took the most digits.
+    fn widest(&self) -> Found {
+        let travels = |a_move: &Move| a_move.travel().is_some();
+        let paths = self.object.moves.iter().filter(|(_, a_move)| travels(a_move)).count();
+        let cameras = self.cameras.as_ref().map_or(0, |group| group.moves.len() / 2);
+        Found::widest(self.object.moves.len() - paths, paths, cameras)
     }
+}
+
+/// Moves that are sampled at the same times.
+struct Group<'a, M> {
+    moves: Vec<(M, Move<'a>)>,
+    timeline: Timeline<'a>,
 }
 
 impl<'a> Plan<'a> {
@@ -117,12 +90,15 @@ impl<'a> Plan<'a> {
         let schemes = if ground.has_schemes() { &options.schemes[..] } else { &options.schemes[..1] };
         let clip = |&scheme: &Scheme| {
             let timeline = ground.timeline(scheme, options.fps, options.key_times)?;
-            Ok(ClipPlan { scheme, moves: ground.moves(scheme), timeline })
+            let cameras = ground.camera_timeline(options.fps, options.key_times)?;
+            let cameras = cameras.map(|timeline| Group { moves: ground.camera_moves(scheme), timeline });
+            Ok(ClipPlan { scheme, object: Group { moves: ground.moves(scheme), timeline }, cameras })
         };
         let clips = schemes.iter().map(clip).collect::<Result<_, _>>();
         let clips = clips.map_err(|error| too_fine(error, ground, source_name))?;
         let warnings = warnings(ground, options);
-        Ok(Plan { ground, source_name, options, scene: scene(ground), clips, warnings })
+        let scene = scene::scene(ground, options.path_colour);
+        Ok(Plan { ground, source_name, options, scene, clips, warnings })
     }
 
     /// What the user should know before a sample is made.
@@ -132,7 +108,7 @@ impl<'a> Plan<'a> {
 
     /// How many rotations and places will be written.
     pub fn samples(&self) -> u64 {
-        self.clips.iter().map(|clip| (clip.moves.len() * clip.timeline.len()) as u64).sum()
+        self.layout().samples()
     }
 
     /// Writes a .glb to `out`, which stands at its start. `progress` is told of every so
@@ -142,10 +118,11 @@ impl<'a> Plan<'a> {
         out: W,
         progress: impl FnMut(u64),
     ) -> io::Result<(W, Vec<ClipFacts>)> {
-        let mut glb = Glb::new(out, self.widest_json())?;
-        let (animations, facts) = self.samples_to(&mut glb, progress)?;
-        let length = glb.length();
-        Ok((glb.finish(&document(&self.scene, &animations, length, None))?, facts))
+        let layout = self.layout();
+        let mut glb = Glb::new(out, self.widest_json(&layout))?;
+        let facts = self.samples_to(&layout, &mut glb, progress)?;
+        let json = self.json(&layout, &facts, None);
+        Ok((glb.finish(&json)?, facts))
     }
 
     /// Writes the .bin of a .gltf to `out` and returns the .gltf's JSON; `name` makes the
@@ -156,23 +133,26 @@ impl<'a> Plan<'a> {
         name: impl FnOnce(&str) -> String,
         progress: impl FnMut(u64),
     ) -> io::Result<(W, Vec<u8>, Vec<ClipFacts>)> {
+        let layout = self.layout();
         let mut bin = Bin::new(out);
-        let (animations, facts) = self.samples_to(&mut bin, progress)?;
-        let length = bin.length();
+        let facts = self.samples_to(&layout, &mut bin, progress)?;
         let (out, hash) = bin.finish()?;
-        Ok((out, document(&self.scene, &animations, length, Some(name(&hash))), facts))
+        Ok((out, self.json(&layout, &facts, Some(name(&hash))), facts))
     }
 
     /// Refuses a plan whose .glb would be larger than a .glb can be.
     pub fn fits_glb(&self) -> Result<(), Error> {
-        let json = self.widest_json();
-        let bytes = glb_size(json, self.binary_length());
+        let layout = self.layout();
+        let json = self.widest_json(&layout);
+        let bytes = glb_size(json, layout.length);
         if bytes <= LARGEST_GLB {
             return Ok(());
         }
-        let sample: u64 = self.clips.iter().map(ClipPlan::sample_size).sum();
-        let room = LARGEST_GLB - glb_size(json, self.scene.bytes().len() as u64);
-        let samples = room as f64 / sample as f64;
+        // What is not a scene's grows with the number of samples.
+        let still = self.scene.bytes().len() as u64;
+        let longest = self.clips.iter().map(|clip| clip.object.timeline.len()).max().unwrap_or(1);
+        let sample = (layout.length - still) as f64 / longest as f64;
+        let samples = (LARGEST_GLB - glb_size(json, still)) as f64 / sample;
         let rate = |others: usize| Fps::at_most((samples - others as f64) / self.ground.duration());
         // Both ends, and the start of a ramp.
         let with_keys = rate(self.ground.knots().len() + 3).filter(|_| self.options.key_times);
@@ -183,120 +163,55 @@ impl<'a> Plan<'a> {
         Err(Error::TooLarge { source_name, bytes, largest_fps, key_times, several_schemes })
     }
 
-    fn binary_length(&self) -> u64 {
-        let clips = self.clips.iter().map(|clip| clip.sample_size() * clip.timeline.len() as u64);
-        self.scene.bytes().len() as u64 + clips.sum::<u64>()
+    fn layout(&self) -> Layout<'_> {
+        Layout::new(&self.scene, &self.clips, self.ground.stream())
     }
 
-    /// An upper bound of the JSON's length: that of a document whose numbers all take the
+    /// An upper bound of the JSON's length: that of a document whose figures all take the
     /// most digits.
-    fn widest_json(&self) -> usize {
-        // Numbers of the most digits a float64 and a float32 can take.
-        let widest = TrackFacts { deviation: Some(-f64::MIN_POSITIVE), ..TrackFacts::default() };
-        let last = -f32::MIN_POSITIVE;
-        let animation = |ClipPlan { scheme, moves, .. }: &ClipPlan| {
-            let channels = moves.iter().map(|a_move| self.channel(a_move, Data::WIDEST, last, Data::WIDEST));
-            let tracks = vec![widest; moves.len()];
-            let extras = recipe(self.ground, self.options, *scheme, &tracks, widest.deviation);
-            Animation { name: self.name(*scheme), extras, channels: channels.collect() }
+    fn widest_json(&self, layout: &Layout) -> usize {
+        let facts: Vec<ClipFacts> =
+            (0..self.clips.len()).map(|clip| self.facts(clip, layout, self.clips[clip].widest())).collect();
+        let uri = "0".repeat(64);
+        self.json(layout, &facts, Some(uri)).len()
+    }
+
+    fn json(&self, layout: &Layout, facts: &[ClipFacts], uri: Option<String>) -> Vec<u8> {
+        let animation = |(clip, facts): (usize, &ClipFacts)| {
+            let extras = recipe(self.ground, self.options, self.clips[clip].scheme, facts);
+            Animation { name: facts.name.clone(), extras, channels: layout.channels[clip].clone() }
         };
-        let animations: Vec<Animation> = self.clips.iter().map(animation).collect();
-        document(&self.scene, &animations, u64::MAX, None).len()
+        let animations: Vec<Animation> = facts.iter().enumerate().map(animation).collect();
+        document(&self.scene, &animations, layout.length, uri)
     }
 
     fn samples_to(
         &self,
+        layout: &Layout,
         buffer: &mut impl Buffer,
         mut progress: impl FnMut(u64),
-    ) -> io::Result<(Vec<Animation>, Vec<ClipFacts>)> {
+    ) -> io::Result<Vec<ClipFacts>> {
         buffer.append(&self.scene.bytes())?;
-        let mut shared: Vec<(&Timeline, Data)> = Vec::new();
-        let (mut animations, mut facts) = (Vec::new(), Vec::new());
-        for ClipPlan { scheme, moves, timeline } in &self.clips {
-            let times = match shared.iter().find(|(known, _)| known.is_same(timeline)) {
-                Some(&(_, times)) => times,
-                None => append_times(buffer, timeline)?,
-            };
-            shared.push((timeline, times));
-            let mut at = buffer.length();
-            let rotations: Vec<Rotation> = moves.iter().filter_map(|(_, turn)| turn.rotation()).collect();
-            let tracks = sample::rotations(&rotations, timeline, |rotations| {
-                progress(rotations.len() as u64);
-                buffer.append(&little_endian(rotations))
-            })?;
-            let mut distance = None;
-            for travel in moves.iter().filter_map(|(_, travel)| travel.travel()) {
-                let bound = sample::translations(travel, timeline, |places| {
-                    progress(places.len() as u64);
-                    buffer.append(&little_endian(places))
-                })?;
-                distance = Some(bound);
-            }
-            let mut channels = Vec::new();
-            for a_move in moves {
-                channels.push(self.channel(
-                    a_move,
-                    times,
-                    timeline.last(),
-                    Data { offset: at, count: times.count },
-                ));
-                at += size(a_move) * times.count;
-            }
-            let extras = recipe(self.ground, self.options, *scheme, &tracks, distance);
-            animations.push(Animation { name: self.name(*scheme), extras, channels });
-            facts.push(ClipFacts::new(self.name(*scheme), scheme.name(), times.count, tracks, distance));
+        let mut found: Vec<Found> = self.clips.iter().map(|_| Found::default()).collect();
+        for block in &layout.blocks {
+            block.write(buffer, &mut progress, &mut found)?;
         }
-        Ok((animations, facts))
+        let facts = found.into_iter().enumerate();
+        Ok(facts.map(|(clip, found)| self.facts(clip, layout, found)).collect())
     }
 
-    fn name(&self, scheme: Scheme) -> String {
-        match self.clips.as_slice() {
+    fn facts(&self, clip: usize, layout: &Layout, found: Found) -> ClipFacts {
+        let ClipPlan { scheme, cameras, object } = &self.clips[clip];
+        let name = match self.clips.as_slice() {
             [_] => self.options.name.clone(),
             _ => format!("{}-{}", self.options.name, scheme.name()),
-        }
-    }
-
-    fn channel(&self, (mover, a_move): &(Mover, Move), times: Data, last: f32, values: Data) -> Channel {
-        let node = match *mover {
-            Mover::Root => 0,
-            Mover::Track(track) => self.scene.turned[track],
         };
-        let property = match a_move {
-            Move::Travel(_) => Property::Translation,
-            Move::Keys(_) | Move::Attitude(_) => Property::Rotation,
-        };
-        Channel { node, property, times, span: [0.0, last], values }
+        let turned = cameras.iter().flat_map(|group| &group.moves[..group.moves.len() / 2]);
+        let node = |camera: usize| &self.scene.nodes[self.scene.cameras[camera]];
+        let names = turned.map(|&(camera, _)| node(camera).name.clone()).collect();
+        let found = found.late(&layout.lateness(&object.moves));
+        ClipFacts::new(name, scheme.name(), object.timeline.len() as u64, found, names)
     }
-}
-
-/// Bytes of one sample.
-fn size((_, a_move): &(Mover, Move)) -> u64 {
-    match a_move {
-        Move::Travel(_) => 12,
-        Move::Keys(_) | Move::Attitude(_) => 16,
-    }
-}
-
-/// What there is to see: the body that keyframes turn, or a glider.
-fn scene(ground: &Ground) -> Scene {
-    match &ground.inputs().keyframes {
-        Some(keyframes) => Scene::of(keyframes.clip.body, keyframes.clip.tracks.len()),
-        None => Scene::glider(ground.extent()),
-    }
-}
-
-fn append_times(buffer: &mut impl Buffer, timeline: &Timeline) -> io::Result<Data> {
-    let data = Data { offset: buffer.length(), count: timeline.len() as u64 };
-    for chunk in 0..timeline.chunks() {
-        let times: Vec<[f32; 1]> = timeline.chunk(chunk).1.into_iter().map(|t| [t]).collect();
-        buffer.append(&little_endian(&times))?;
-    }
-    Ok(data)
-}
-
-fn little_endian<const N: usize>(values: &[[f32; N]]) -> Vec<u8> {
-    let bits: Vec<u32> = values.as_flattened().iter().map(|x| x.to_bits().to_le()).collect();
-    bytemuck::cast_slice(&bits).to_vec()
 }
 
 fn too_fine(error: TooFine, ground: &Ground, source_name: &str) -> Error {
@@ -304,7 +219,7 @@ fn too_fine(error: TooFine, ground: &Ground, source_name: &str) -> Error {
     match (error, &ground.inputs().keyframes, &ground.inputs().path) {
         (TooFine::Keys { key }, Some(keyframes), None) => {
             let clip = &keyframes.clip;
-            let lines = (clip.lines.of(key), clip.lines.of(key + 1));
+            let lines = (clip.line(key), clip.line(key + 1));
             let key_times = clip.duration() as f32 > 0.0;
             Error::KeysTooClose { source_name, lines, seconds: clip.times[key], key_times }
         }
@@ -318,11 +233,18 @@ fn warnings(ground: &Ground, options: &Options) -> Vec<Warning> {
     if let Some(keyframes) = &inputs.keyframes {
         warnings.extend_from_slice(&keyframes.warnings);
         warnings.extend(close_keys(&keyframes.clip, options));
-        let (clip, ends) = (&keyframes.clip, ground.shape().ends);
-        let place = |key| clip.place(key);
-        for &scheme in &options.schemes {
-            warnings.extend(curve::warnings(&clip.times, &clip.tracks, &place, scheme, ends));
+        let clip = &keyframes.clip;
+        if clip.through == Through::Keys {
+            let place = |key| clip.place(key);
+            let ends = ground.shape().ends;
+            let by = |&scheme| curve::warnings(&clip.times, &clip.tracks, &place, scheme, ends);
+            warnings.extend(options.schemes.iter().flat_map(by));
         }
+    }
+    if let Some((times, keys, ends)) = ground.orientation_keys() {
+        let place = |key: usize| format!("t = {:.6} s (key point {})", times[key], key + 1);
+        let by = |&scheme| curve::warnings(times, &[keys], &place, scheme, ends);
+        warnings.extend(options.schemes.iter().flat_map(by));
     }
     warnings.extend(inputs.path.iter().flat_map(|path| path.warnings.iter().cloned()));
     warnings.dedup();

@@ -1,11 +1,11 @@
 //! What a clip of the output is made from and how, as its `extras` say it.
 
 use super::Options;
-use super::facts::rounded_up;
+use super::facts::{ClipFacts, rounded_up};
 use crate::curve::Scheme;
 use crate::moves::{Ground, Orient};
 use crate::path::{Ease, PathEnds};
-use crate::sample::TrackFacts;
+use crate::read::Order;
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -22,6 +22,16 @@ struct Recipe<'a> {
     time_scale: Option<f64>,
     #[serde(flatten)]
     path: Option<PathRecipe<'a>>,
+    /// How many objects go the same way, seconds from one to the next, and whether each
+    /// is hidden until it starts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    repeat: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    delay: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    no_wrap: Option<bool>,
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    cameras: &'a [String],
     inputs: Vec<Input<'a>>,
     /// Upper bounds of the angle between playback (slerp) and the curve, degrees, by box
     /// and last of the root, where it turns; null where nothing is known between samples.
@@ -65,29 +75,31 @@ struct Input<'a> {
 }
 
 /// The recipe as JSON.
-pub(super) fn recipe(
-    ground: &Ground,
-    options: &Options,
-    scheme: Scheme,
-    tracks: &[TrackFacts],
-    distance: Option<f64>,
-) -> String {
+pub(super) fn recipe(ground: &Ground, options: &Options, scheme: Scheme, facts: &ClipFacts) -> String {
     let inputs = ground.inputs();
-    let keyframes = inputs.keyframes.as_ref();
-    let hashes = keyframes.map(|k| &k.hash).into_iter().chain(inputs.path.as_ref().map(|p| &p.hash));
-    let shape = ground.shape();
+    let (shape, stream) = (ground.shape(), ground.stream());
+    let copies = stream.count > 1;
     let recipe = Recipe {
         dat2glb: env!("CARGO_PKG_VERSION"),
         scheme: scheme.name(),
         ends: shape.ends.name(),
         fps: options.fps.to_string(),
         key_times: options.key_times,
-        quat_order: keyframes.map(|keyframes| keyframes.order.name()),
+        quat_order: options.quat_order.map(Order::name),
         time_scale: (shape.time_scale != 1.0).then_some(shape.time_scale),
         path: inputs.path.as_ref().map(|_| path_recipe(ground, ground.orient())),
-        inputs: options.inputs.iter().zip(hashes).map(|(name, blake3)| Input { name, blake3 }).collect(),
-        deviation_degrees: tracks.iter().map(|track| track.deviation.map(rounded_up)).collect(),
-        deviation_units: distance.map(rounded_up),
+        repeat: copies.then_some(stream.count),
+        delay: copies.then_some(stream.delay),
+        no_wrap: (copies && !stream.wrap).then_some(true),
+        cameras: &options.cameras,
+        inputs: options
+            .inputs
+            .iter()
+            .zip(inputs.hashes())
+            .map(|(name, blake3)| Input { name, blake3 })
+            .collect(),
+        deviation_degrees: facts.tracks.iter().map(|track| track.deviation.map(rounded_up)).collect(),
+        deviation_units: facts.deviation_units,
     };
     serde_json::to_string(&recipe).expect("plain data becomes JSON")
 }

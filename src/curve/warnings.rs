@@ -101,7 +101,14 @@ mod tests {
         let mut lines = Lines::default();
         (0..times.len()).for_each(|i| lines.push(i + 2));
         let track = (0..times.len()).map(turn).collect();
-        Clip { body: Body::Free, start: 0.0, times: times.to_vec(), tracks: vec![track], lines }
+        Clip {
+            body: Body::Free,
+            start: 0.0,
+            times: times.to_vec(),
+            tracks: vec![track],
+            through: Default::default(),
+            lines,
+        }
     }
 
     fn found(clip: &Clip, scheme: Scheme, ends: Ends) -> Vec<Warning> {

@@ -4,17 +4,23 @@
 //! scheme turns it into [`Move`]s, a node's rotation or place each. `convert` samples
 //! them, `check` compares them with how a file plays.
 
-mod euler;
+mod camera;
+mod copies;
+mod keys;
 mod way;
 
-pub use euler::euler_keys;
+pub use camera::{Camera, Stand, View};
+pub use copies::{Copies, Moment, Stream, TooMany};
+pub use keys::{camera_keys, rotation_keys};
 
-use crate::curve::{Ends, Motion, NotClosed, Scheme};
+use crate::clip::Through;
+use crate::curve::{Arc, Ends, Motion, NotClosed, Scheme};
 use crate::math::Quat;
-use crate::orient::{Axis, Frame, Level, ParallelAxes};
+use crate::orient::{Axis, Frame, Level, ParallelAxes, model_frame};
 use crate::path::{self, Ease, PathEnds, Timing};
 use crate::read::{Keyframes, PathFile};
 use crate::sample::{Fps, Rotation, Timeline, TooFine, Travel};
+use camera::{Clock, Post};
 use glam::DVec3;
 use std::borrow::Cow;
 use way::Way;
@@ -26,6 +32,17 @@ pub struct Inputs {
     pub keyframes: Option<Keyframes>,
     /// The way of the root.
     pub path: Option<PathFile>,
+    /// Who looks on.
+    pub cameras: Vec<Camera>,
+}
+
+impl Inputs {
+    /// The BLAKE3 hashes of all files: rotations, path, then what cameras were made of.
+    pub fn hashes(&self) -> Vec<&str> {
+        let keyframes = self.keyframes.iter().map(|keyframes| keyframes.hash.as_str());
+        let path = self.path.iter().map(|path| path.hash.as_str());
+        keyframes.chain(path).chain(self.cameras.iter().flat_map(Camera::hashes)).collect()
+    }
 }
 
 /// How the object looks that moves along a path.
@@ -89,6 +106,8 @@ pub struct Shape {
     pub model_forward: Axis,
     /// Where the model's top points.
     pub model_up: Axis,
+    /// How many objects go the same way.
+    pub copies: Copies,
 }
 
 impl Default for Shape {
@@ -106,6 +125,7 @@ impl Default for Shape {
             level: Level::default(),
             model_forward: Axis::Z,
             model_up: Axis::Y,
+            copies: Copies::default(),
         }
     }
 }
@@ -120,12 +140,15 @@ pub enum Error {
     /// A path that cannot be.
     #[error(transparent)]
     Path(#[from] path::Error),
-    /// Control rotations, which no scheme runs through.
-    #[error("{0}: control rotations cannot be converted yet; euler keys can")]
-    Controls(&'static str),
     /// A model whose nose and top point the same way.
     #[error(transparent)]
     Model(#[from] ParallelAxes),
+    /// Still cameras without a path.
+    #[error("cameras beside key points need a path with key points: say --path PATH.dat")]
+    NoKeyPoints,
+    /// More copies than the way has room for.
+    #[error(transparent)]
+    Copies(#[from] TooMany),
 }
 
 /// A node of the scene that moves.
@@ -156,6 +179,25 @@ impl Move<'_> {
         }
     }
 
+    /// The rotation at a time; none of what only travels.
+    pub(crate) fn turned(&self, t: f64) -> Quat {
+        match self {
+            Move::Keys(motion) => motion.at(t),
+            Move::Attitude(at) => at(t),
+            Move::Travel(_) => Quat::IDENTITY,
+        }
+    }
+
+    /// If it is a rotation, an upper bound of its speed, degrees a second; none where
+    /// nothing is known of it.
+    pub fn turning_bound(&self) -> Option<Option<f64>> {
+        match self {
+            Move::Keys(motion) => Some(Some(turning_bound(motion).to_degrees())),
+            Move::Attitude(_) => Some(None),
+            Move::Travel(_) => None,
+        }
+    }
+
     /// The same as what samplers take, if it is a rotation.
     pub fn rotation(&self) -> Option<Rotation<'_>> {
         match self {
@@ -181,52 +223,102 @@ pub struct Ground<'a> {
     /// Times of the rotation keys on the common clock.
     key_times: Cow<'a, [f64]>,
     way: Option<Way>,
+    posts: Vec<Post>,
+    stream: Stream,
     duration: f64,
-    /// Times that samples must meet, but for ramps where there is no path.
+    /// Times that samples of the object must meet, but for ramps where keys are alone.
     knots: Cow<'a, [f64]>,
+    /// Those of them that count without key times.
+    seams: Vec<f64>,
+    /// The same for cameras that move.
+    camera_knots: Vec<f64>,
 }
 
 impl<'a> Ground<'a> {
     /// Puts inputs on one clock, for some schemes; there is at least one input.
     pub fn new(inputs: &'a Inputs, shape: Shape, schemes: &[Scheme]) -> Result<Ground<'a>, Error> {
         let clip = inputs.keyframes.as_ref().map(|keyframes| &keyframes.clip);
-        if let Some(clip) = clip.filter(|_| schemes.iter().any(|&scheme| scheme != Scheme::Slerp)) {
+        let keys = clip.filter(|clip| clip.through == Through::Keys);
+        if let Some(clip) = keys.filter(|_| schemes.iter().any(|&scheme| scheme != Scheme::Slerp)) {
             shape.ends.accept(clip)?;
         }
-        let timed = inputs.path.as_ref().filter(|path| path.times.is_some());
-        let starts = clip.map(|clip| clip.start).into_iter().chain(timed.map(|path| path.start));
-        let zero = starts.fold(f64::INFINITY, f64::min);
-        let on_clock = |t: f64| t / shape.time_scale;
-        let key_times = match clip {
-            Some(clip) if clip.start == zero && shape.time_scale == 1.0 => {
-                Cow::Borrowed(clip.times.as_slice())
+        let zero = zero(inputs);
+        let mut key_times = key_times(inputs, zero, &shape);
+        let way = match &inputs.path {
+            Some(file) => {
+                let start = if file.times.is_some() { (file.start - zero) / shape.time_scale } else { 0.0 };
+                let untimed = inputs.keyframes.as_ref().is_some_and(|keyframes| keyframes.untimed);
+                let says = file.times.is_some() || file.duration.is_some() || shape.speed.is_some();
+                let rest = key_times.last().copied().filter(|_| !(untimed && says));
+                let way = Way::new(file, start, rest, &shape)?;
+                if untimed && says {
+                    stretch(&mut key_times, way.end());
+                }
+                Some(way)
             }
-            Some(clip) => Cow::Owned(clip.times.iter().map(|t| on_clock(clip.start - zero + t)).collect()),
-            None => Cow::Borrowed([].as_slice()),
+            None => None,
         };
-        let rest = key_times.last().copied();
-        let way = inputs.path.as_ref().map(|file| {
-            let start = if file.times.is_some() { on_clock(file.start - zero) } else { 0.0 };
-            Way::new(file, start, rest, &shape)
-        });
-        let way = way.transpose()?;
-        let duration = rest.into_iter().chain(way.as_ref().map(Way::end)).fold(0.0, f64::max);
-        let knots = Cow::Borrowed([].as_slice());
-        let mut ground = Ground { inputs, shape, key_times, way, duration, knots };
+        let once =
+            key_times.last().copied().into_iter().chain(way.as_ref().map(Way::end)).fold(0.0, f64::max);
+        let stream = shape.copies.stream(once)?;
+        let scale = shape.time_scale;
+        let mut clock = Clock { zero, duration: stream.duration(), scale };
+        let ends = inputs.cameras.iter().map(|camera| camera.end(&clock));
+        clock.duration = ends.fold(clock.duration, f64::max);
+        let mut posts = Vec::new();
+        for camera in &inputs.cameras {
+            posts.extend(camera.posts(&clock, &shape, way.as_ref())?);
+        }
+        let mut ground = Ground {
+            inputs,
+            shape,
+            key_times,
+            way,
+            posts,
+            stream,
+            duration: clock.duration,
+            knots: Cow::Borrowed([].as_slice()),
+            seams: merged(stream.knots().into_iter().chain([0.0, once])),
+            camera_knots: Vec::new(),
+        };
+        ground.camera_knots = ground.all_camera_knots();
         ground.knots = ground.all_knots(schemes);
         Ok(ground)
     }
 
-    /// A path's knots and all keys together; keys alone are a timeline as they are.
+    /// All keys, a path's knots, and what copies and cameras need; keys alone are a
+    /// timeline as they are.
     fn all_knots(&self, schemes: &[Scheme]) -> Cow<'a, [f64]> {
-        let Some(way) = &self.way else { return self.key_times.clone() };
-        let moves = schemes.iter().flat_map(|&scheme| self.moves(scheme));
-        let ramps: Vec<f64> = moves.filter_map(|(_, turn)| turn.ramp()).collect();
-        let keys = self.key_times.iter().chain(&way.knots).chain(&ramps).copied();
-        Cow::Owned(merged(keys.chain([0.0, self.duration])))
+        if self.way.is_none() && !self.has_moving_cameras() {
+            return self.key_times.clone();
+        }
+        let ramps: Vec<f64> = schemes.iter().flat_map(|&scheme| self.ramps(scheme)).collect();
+        let way = self.way.iter().flat_map(|way| &way.knots);
+        // Cameras and object share their times where both take equally long.
+        let cameras = self.camera_knots.iter().filter(|_| self.duration == self.stream.once);
+        let times = self.key_times.iter().chain(way).chain(&ramps).chain(&self.seams).chain(cameras);
+        Cow::Owned(merged(times.copied()))
     }
 
-    /// Times that samples must meet.
+    fn ramps(&self, scheme: Scheme) -> Vec<f64> {
+        self.moves(scheme).iter().filter_map(|(_, turn)| turn.ramp()).collect()
+    }
+
+    fn all_camera_knots(&self) -> Vec<f64> {
+        let rails = self.posts.iter().filter_map(|post| match post {
+            Post::Rails(rails) => Some(rails.knots()),
+            _ => None,
+        });
+        // What a camera looks at may turn at once.
+        let way = self.way.iter().flat_map(|way| way.knots.iter().copied());
+        merged(rails.flatten().chain(way).chain([0.0, self.duration]))
+    }
+
+    fn has_moving_cameras(&self) -> bool {
+        self.posts.iter().any(|post| matches!(post, Post::Rails(_)))
+    }
+
+    /// Times that samples of the object must meet.
     pub fn knots(&self) -> &[f64] {
         &self.knots
     }
@@ -236,18 +328,34 @@ impl<'a> Ground<'a> {
         self.duration
     }
 
-    /// The sample times by a scheme.
+    /// The object and its copies in time.
+    pub fn stream(&self) -> &Stream {
+        &self.stream
+    }
+
+    /// The sample times of one object by a scheme.
     pub fn timeline(&self, scheme: Scheme, fps: Fps, key_times: bool) -> Result<Timeline<'_>, TooFine> {
-        let ramp = match &self.way {
-            Some(_) => None, // among the knots
-            None => self.moves(scheme).first().and_then(|(_, turn)| turn.ramp()),
+        if !key_times && self.stream.wraps() {
+            return Timeline::new(&self.seams, None, fps, true);
+        }
+        let ramp = match self.knots {
+            Cow::Owned(_) => None, // among the knots, or there is none
+            Cow::Borrowed(_) => self.ramps(scheme).first().copied(),
         };
         Timeline::new(&self.knots, ramp, fps, key_times)
     }
 
+    /// The sample times of cameras, where any move.
+    pub fn camera_timeline(&self, fps: Fps, key_times: bool) -> Result<Option<Timeline<'_>>, TooFine> {
+        let timeline = || Timeline::new(&self.camera_knots, None, fps, key_times);
+        self.has_moving_cameras().then(timeline).transpose()
+    }
+
     /// Whether the scheme makes a difference.
     pub fn has_schemes(&self) -> bool {
-        self.inputs.keyframes.is_some() || self.orient() == Orient::Keyed
+        let keys = |keyframes: &Keyframes| keyframes.clip.through == Through::Keys;
+        let cameras = self.posts.iter().any(|post| matches!(post, Post::Rails(rails) if rails.has_keys()));
+        self.inputs.keyframes.as_ref().is_some_and(keys) || self.orient() == Orient::Keyed || cameras
     }
 
     /// What was put together.
@@ -260,11 +368,16 @@ impl<'a> Ground<'a> {
         &self.shape
     }
 
-    /// What moves, by a scheme, in the order in which files hold it.
+    /// What of the object moves, by a scheme, in the order in which files hold it.
     pub fn moves(&self, scheme: Scheme) -> Vec<(Mover, Move<'_>)> {
-        let tracks = self.inputs.keyframes.iter().flat_map(|keyframes| &keyframes.clip.tracks).enumerate();
-        let motion = |keys| Move::Keys(Motion::new(&self.key_times, keys, scheme, self.shape.ends));
-        let mut moves: Vec<(Mover, Move)> = tracks.map(|(i, keys)| (Mover::Track(i), motion(keys))).collect();
+        let clip = self.inputs.keyframes.as_ref().map(|keyframes| &keyframes.clip);
+        let motion = |keys, through| match through {
+            Through::Keys => Motion::new(&self.key_times, keys, scheme, self.shape.ends),
+            Through::Controls => Motion::through_controls(&self.key_times, keys),
+        };
+        let tracks = clip.iter().flat_map(|clip| clip.tracks.iter().map(|keys| motion(keys, clip.through)));
+        let tracks = tracks.enumerate().map(|(i, motion)| (Mover::Track(i), Move::Keys(motion)));
+        let mut moves: Vec<(Mover, Move)> = tracks.collect();
         if let Some(way) = &self.way {
             moves.extend(way.attitude(self.orient(), &self.shape, scheme).map(|turn| (Mover::Root, turn)));
             moves.push((Mover::Root, Move::Travel(Box::new(way))));
@@ -272,12 +385,87 @@ impl<'a> Ground<'a> {
         moves
     }
 
+    /// The keys by which the root turns on its way, their times, and what they do at
+    /// their ends; where it turns by keys.
+    pub fn orientation_keys(&self) -> Option<(&[f64], &[Quat], Ends)> {
+        let way = self.way.as_ref().filter(|_| self.orient() == Orient::Keyed)?;
+        let (times, keys) = &way.keyed;
+        Some((times, keys, way::key_ends(self.shape.ends)))
+    }
+
+    /// What moves which camera, as [`Ground::stands`] counts them, by a scheme: all
+    /// rotations first.
+    pub fn camera_moves(&self, scheme: Scheme) -> Vec<(usize, Move<'_>)> {
+        let rails = self.posts.iter().enumerate().filter_map(|(i, post)| match post {
+            Post::Rails(rails) => Some((i, rails)),
+            _ => None,
+        });
+        let moves: Vec<_> = rails.map(|(i, rails)| (i, rails.moves(self, scheme))).collect();
+        let (turns, travels): (Vec<_>, Vec<_>) =
+            moves.into_iter().map(|(i, [turn, travel])| ((i, turn), (i, travel))).unzip();
+        turns.into_iter().chain(travels).collect()
+    }
+
+    /// Where cameras stand, for an object about as large as `size`.
+    pub fn stands(&self, size: f64) -> Vec<Stand> {
+        let mut kinds: Vec<&str> = Vec::new();
+        let stand = |post: &Post| {
+            kinds.push(post.kind());
+            let count = kinds.iter().filter(|kind| **kind == post.kind()).count();
+            let name = match (post, count) {
+                (Post::Beside(_), _) | (_, 2..) => format!("{}-{count}", post.kind()),
+                _ => post.kind().to_owned(),
+            };
+            let (place, turned, mounted) = post.stand(self, size);
+            Stand { name, place, turned, mounted }
+        };
+        self.posts.iter().map(stand).collect()
+    }
+
+    /// Where the root is.
+    fn root_at(&self, t: f64) -> DVec3 {
+        self.way.as_ref().map_or(DVec3::ZERO, |way| way.place(t))
+    }
+
+    /// Turns the model to fit +Z forward and +Y up.
+    fn model(&self) -> Quat {
+        // One that cannot be is refused where the path is read.
+        let model = model_frame(self.shape.model_forward, self.shape.model_up).ok();
+        model.filter(|_| self.way.is_some()).unwrap_or(Quat::IDENTITY)
+    }
+
+    /// The path as places to draw a line through, with times as shares of the whole;
+    /// empty without a path.
+    pub fn trace(&self) -> Vec<(f64, DVec3)> {
+        self.way.as_ref().map_or(Vec::new(), Way::trace)
+    }
+
+    /// The points that shape the path.
+    pub fn control_points(&self) -> &[DVec3] {
+        self.way.as_ref().map_or(&[], |way| way.path.control_points())
+    }
+
+    /// What ends before the clip does, and when: it holds its last value from there on.
+    pub fn holds(&self) -> Vec<(&'static str, f64)> {
+        let rotations = self.key_times.last().map(|&end| ("rotations", end));
+        let path = self.way.as_ref().map(|way| ("key points of the path", way.end()));
+        let ends = rotations.into_iter().chain(path);
+        ends.filter(|(_, end)| *end < self.stream.once.max(self.duration) * (1.0 - 1e-9)).collect()
+    }
+
     /// How far the path's key points lie apart along the axis where that is most.
     pub fn extent(&self) -> f64 {
-        let points = self.way.as_ref().map_or(&[][..], |way| way.path.key_points());
-        let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-        let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-        if points.is_empty() { 0.0 } else { (high - low).max_element() }
+        extent(self.way.iter().flat_map(|way| way.path.key_points()))
+    }
+
+    /// The same of all points by which paths are shaped, cameras' too, and the origin.
+    pub fn reach(&self) -> f64 {
+        let rails = self.posts.iter().filter_map(|post| match post {
+            Post::Rails(rails) => Some(&rails.way),
+            _ => None,
+        });
+        let points = self.way.iter().chain(rails).flat_map(|way| way.path.control_points());
+        extent(points.chain([&DVec3::ZERO]))
     }
 
     /// How the root looks.
@@ -290,6 +478,55 @@ impl<'a> Ground<'a> {
         };
         self.shape.orient.unwrap_or(by_default)
     }
+}
+
+/// An upper bound of a motion's speed, radians a second.
+fn turning_bound(motion: &Motion) -> f64 {
+    let (mut worst, mut piece): (f64, _) = (0.0, motion.piece_at(0.0));
+    while piece.end.is_finite() {
+        // Rates count half angles.
+        worst = worst.max(2.0 * piece.rates().speed / piece.duration());
+        piece = motion.piece_at(piece.end);
+    }
+    worst
+}
+
+/// The earliest time of all inputs that have times.
+fn zero(inputs: &Inputs) -> f64 {
+    let timed_keys = inputs.keyframes.as_ref().filter(|keyframes| !keyframes.untimed);
+    let timed_path = inputs.path.as_ref().filter(|path| path.times.is_some());
+    let starts = timed_keys.map(|keyframes| keyframes.clip.start).into_iter();
+    let starts = starts.chain(timed_path.map(|path| path.start));
+    let earliest = starts.chain(inputs.cameras.iter().flat_map(Camera::starts)).fold(f64::INFINITY, f64::min);
+    if earliest.is_finite() { earliest } else { 0.0 }
+}
+
+/// Times of rotation keys on the clock that starts at `zero`.
+fn key_times<'a>(inputs: &'a Inputs, zero: f64, shape: &Shape) -> Cow<'a, [f64]> {
+    let Some(Keyframes { clip, untimed, .. }) = &inputs.keyframes else {
+        return Cow::Borrowed([].as_slice());
+    };
+    let start = if *untimed { 0.0 } else { clip.start - zero };
+    if start == 0.0 && shape.time_scale == 1.0 {
+        return Cow::Borrowed(clip.times.as_slice());
+    }
+    Cow::Owned(clip.times.iter().map(|t| (start + t) / shape.time_scale).collect())
+}
+
+/// Makes times from 0 on last until `end`.
+fn stretch(times: &mut Cow<[f64]>, end: f64) {
+    let factor = end / times[times.len() - 1];
+    times.to_mut().iter_mut().for_each(|t| *t *= factor);
+    if let Some(last) = times.to_mut().last_mut() {
+        *last = end;
+    }
+}
+
+/// How far points lie apart along the axis where that is most.
+fn extent<'a>(points: impl Iterator<Item = &'a DVec3> + Clone) -> f64 {
+    let low = points.clone().copied().fold(DVec3::INFINITY, DVec3::min);
+    let high = points.copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    (high - low).max_element().max(0.0)
 }
 
 /// Times in order, those that float32 cannot tell apart taken for one.

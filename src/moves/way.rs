@@ -14,7 +14,7 @@ pub(super) struct Way {
     pub(super) path: Path,
     pub(super) start: f64,
     /// Orientation by keys: their times on the common clock, and they themselves.
-    keyed: (Vec<f64>, Vec<Quat>),
+    pub(super) keyed: (Vec<f64>, Vec<Quat>),
     /// The file gives some of them.
     pub(super) any_given: bool,
     /// Turns the model to fit +Z forward and +Y up.
@@ -25,6 +25,9 @@ pub(super) struct Way {
 
 /// How long before a corner the turn begins that a file shows for its jump, seconds.
 const RAMP: f64 = 1e-3;
+
+/// In how many pieces a line is drawn from key point to key point.
+const LINE_STEPS: u32 = 32;
 
 impl Way {
     /// The path of a file that begins at `start` on the clock; one without times lasts as
@@ -69,14 +72,28 @@ impl Way {
         self.start + self.path.duration()
     }
 
+    /// The place at a time of the clock.
+    pub(super) fn place(&self, t: f64) -> DVec3 {
+        self.path.position(t - self.start)
+    }
+
+    /// Places to draw a line through, with times as shares of the path's.
+    pub(super) fn trace(&self) -> Vec<(f64, DVec3)> {
+        let duration = self.path.duration();
+        let knots = self.path.key_times().windows(2).filter(|pair| pair[1] > pair[0]);
+        let steps = knots.flat_map(|pair| {
+            (0..LINE_STEPS).map(|i| pair[0] + (pair[1] - pair[0]) * f64::from(i) / f64::from(LINE_STEPS))
+        });
+        steps.chain([duration]).map(|t| (t / duration, self.path.position(t))).collect()
+    }
+
     /// How the root turns, if it does.
     pub(super) fn attitude<'a>(&'a self, orient: Orient, shape: &Shape, scheme: Scheme) -> Option<Move<'a>> {
         match orient {
             Orient::None => None,
             Orient::Keyed => {
-                // The path's own ends close it; its keys need not be equal there.
-                let ends = if shape.ends == Ends::Closed { Ends::Natural } else { shape.ends };
-                Some(Move::Keys(Motion::new(&self.keyed.0, &self.keyed.1, scheme, ends)))
+                let (times, keys) = &self.keyed;
+                Some(Move::Keys(Motion::new(times, keys, scheme, key_ends(shape.ends))))
             }
             Orient::Tangent => Some(self.facing(Tangent::new(&self.path), shape.level)),
             Orient::Upright => Some(self.facing(Upright::new(&self.path, shape.bank), shape.level)),
@@ -106,7 +123,7 @@ impl Way {
 
 impl Travel for &Way {
     fn at(&self, t: f64) -> DVec3 {
-        self.path.position(t - self.start)
+        self.place(t)
     }
 
     fn acceleration_bound(&self, from: f64, to: f64) -> f64 {
@@ -123,6 +140,12 @@ impl Travel for &Way {
     fn knots(&self) -> &[f64] {
         &self.knots
     }
+}
+
+/// What orientation by keys does at its ends: the path's own ends close it; its keys need
+/// not be equal there.
+pub(super) fn key_ends(ends: Ends) -> Ends {
+    if ends == Ends::Closed { Ends::Natural } else { ends }
 }
 
 /// Keys at times that float32 can tell apart: of several at one time the last counts,

@@ -79,7 +79,7 @@ pub(super) fn tilt(forward: DVec3) -> f64 {
 }
 
 /// A vector turned by a rotation.
-pub(super) fn turned(q: Quat, v: DVec3) -> DVec3 {
+pub(crate) fn turned(q: Quat, v: DVec3) -> DVec3 {
     DQuat::from(q) * v
 }
 

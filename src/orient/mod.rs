@@ -24,6 +24,7 @@ mod upright;
 use crate::path::Course;
 pub use axis_angle::axis_angle;
 pub use euler::Euler;
+pub(crate) use facing::turned;
 pub use frame::Frame;
 pub use keyed::keyed;
 pub use level::{Level, Levelled};
@@ -51,6 +52,12 @@ impl<A: Attitude + ?Sized> Attitude for Box<A> {
     fn tangent(&self) -> &Tangent<'_> {
         (**self).tangent()
     }
+}
+
+/// The rotation that takes +Z to a unit vector, with up as near to +Y as it can be;
+/// straight up or down with what pitching from +Z makes of it.
+pub(crate) fn facing_upright(forward: glam::DVec3) -> Quat {
+    facing::Facing::upright(forward).rotation()
 }
 
 /// 3x² − 2x³ on 0..=1, and the nearer end's value outside.

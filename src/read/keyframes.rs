@@ -10,7 +10,7 @@ use super::table::Opening;
 use super::times;
 use super::words::{not_utf8, quoted, skip_space, words};
 use super::{Error, Order};
-use crate::clip::{Clip, Lines, Warning};
+use crate::clip::{Clip, Lines, Through, Warning};
 use std::io::Read;
 
 /// What a keyframe file holds.
@@ -18,6 +18,9 @@ use std::io::Read;
 pub struct Keyframes {
     /// The keys, checked.
     pub clip: Clip,
+    /// Whether neither rows nor header say when: evenly spaced keys, which last as long as
+    /// what they go with.
+    pub untimed: bool,
     /// The order of quaternions' parts in which they were read.
     pub order: Order,
     /// What a user should know.
@@ -85,7 +88,7 @@ pub(super) fn start<R: Read + Send>(
     let (clip, order, warnings) = reader.finish()?;
     let hash = blocks.hasher.finalize().to_hex().to_string();
     let bytes = blocks.bytes;
-    Ok(Start::Keyframes(Keyframes { clip, order, warnings, largest_norm_error, hash, bytes }))
+    Ok(Start::Keyframes(Keyframes { clip, untimed: false, order, warnings, largest_norm_error, hash, bytes }))
 }
 
 /// Why reading stopped.
@@ -306,7 +309,8 @@ impl<'a> Reader<'a> {
                 let warnings = self.oddities.warnings(order);
                 let Reader { start, times, tracks, lines, .. } = self;
                 let body = header.body;
-                return Ok((Clip { body, start, times, tracks, lines }, order, warnings));
+                let clip = Clip { body, start, times, tracks, through: Through::Keys, lines };
+                return Ok((clip, order, warnings));
             }
         };
         let problem = Problem::new(format!("expected two keys or more, found {found}"));

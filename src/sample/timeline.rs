@@ -106,10 +106,11 @@ impl<'a> Timeline<'a> {
         Ok(timeline)
     }
 
-    /// Whether another timeline of the same rate has the same times.
+    /// Whether another timeline has the same times, for the same reasons.
     pub fn is_same(&self, other: &Timeline) -> bool {
-        let Knots { keys, ramp, .. } = self.knots;
-        std::ptr::eq(keys, other.knots.keys) && ramp == other.knots.ramp && self.fps == other.fps
+        let (Knots { keys, ramp, ends_only }, others) = (self.knots, other.knots);
+        let alike = ramp == others.ramp && ends_only == others.ends_only && self.fps == other.fps;
+        alike && (std::ptr::eq(keys, others.keys) || keys == others.keys)
     }
 
     /// How many samples there are.

@@ -11,6 +11,9 @@ pub(super) struct Colours {
     pub(super) axes: [usize; 3],
 }
 
+/// About how large it is.
+pub(super) const SIZE: f64 = 2.0;
+
 /// Builds the mesh. The body is about 1.6 long; the arrows reach 1.5 from the centre.
 pub(super) fn mesh(colours: &Colours) -> Mesh {
     let mut mesh = Mesh::new("body");

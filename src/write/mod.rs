@@ -8,10 +8,14 @@ mod container;
 mod document;
 mod free_body;
 mod glider;
+mod line;
 mod mesh;
 mod scene;
+mod trace;
 
 pub use container::{Bin, Buffer, Glb, LARGEST_GLB, glb_size};
-pub use document::{Animation, Channel, Data, Property, document};
+pub use document::{Animation, Channel, Data, Interpolation, Property, document};
+pub use line::Line;
 pub use mesh::{Material, Mesh, Part};
-pub use scene::{Node, Scene};
+pub use scene::{Lens, Node, Object, Scene, Shape};
+pub use trace::{Colour, Trace};

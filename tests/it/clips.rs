@@ -66,6 +66,9 @@ proptest! {
         let keyframes = read::keyframes("random.dat", clip.text(order).as_bytes(), None).unwrap();
         let ends = if ends.accept(&keyframes.clip).is_ok() { ends } else { Ends::Natural };
         let options = Options {
+            quat_order: None,
+            cameras: Vec::new(),
+            path_colour: None,
             name: "random".into(),
             inputs: vec!["random.dat".into()],
             schemes: vec![scheme],
@@ -73,7 +76,7 @@ proptest! {
             key_times,
         };
         let boxes = keyframes.clip.tracks.len();
-        let inputs = Inputs { keyframes: Some(keyframes), path: None };
+        let inputs = Inputs { keyframes: Some(keyframes), path: None, cameras: Vec::new() };
         let shape = Shape { ends, ..Shape::default() };
         let ground = Ground::new(&inputs, shape, &options.schemes).unwrap();
         let plan = Plan::new(&ground, "random.dat", &options).unwrap();

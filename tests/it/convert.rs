@@ -27,7 +27,6 @@ fn a_clip_says_how_it_was_made() {
             "ends": "clamped",
             "fps": "30000/1001",
             "keyTimes": true,
-            "quatOrder": "xyzw",
             "inputs": [{ "name": "xyzw.dat", "blake3": hash }],
             "deviationDegrees": null,
         });

@@ -26,4 +26,6 @@ mod refused;
 #[cfg(feature = "cli")]
 mod sample;
 #[cfg(all(feature = "cli", feature = "render"))]
+mod scenery;
+#[cfg(all(feature = "cli", feature = "render"))]
 mod thumbnail;

@@ -2,6 +2,8 @@
 
 #[cfg(feature = "cli")]
 pub(crate) mod loaded;
+#[cfg(all(feature = "cli", feature = "render"))]
+pub(crate) mod stage;
 #[cfg(feature = "cli")]
 pub(crate) mod tool;
 
