@@ -15,6 +15,7 @@ pub use facts::{CameraFacts, ClipFacts};
 use crate::clip::{Clip, Through, Warning};
 use crate::curve::{self, Scheme};
 use crate::moves::{Ground, Move, Mover};
+use crate::path::{Kind, PathEnds};
 use crate::read::Order;
 use crate::sample::{Fps, Timeline, TooFine};
 use crate::write::{Animation, Bin, Buffer, Colour, Glb, LARGEST_GLB, Scene, document, glb_size};
@@ -247,8 +248,20 @@ fn warnings(ground: &Ground, options: &Options) -> Vec<Warning> {
         warnings.extend(options.schemes.iter().flat_map(by));
     }
     warnings.extend(inputs.path.iter().flat_map(|path| path.warnings.iter().cloned()));
+    warnings.extend(inputs.path.as_ref().and_then(|path| idle_ends(path.kind, ground.shape().path_ends)));
     warnings.dedup();
     warnings
+}
+
+/// Ends that a path of this kind does not have.
+fn idle_ends(kind: Kind, ends: PathEnds) -> Option<Warning> {
+    let through = matches!(kind, Kind::CatmullRom | Kind::CatmullRomCentripetal | Kind::CatmullRomChordal);
+    let idle = !through && matches!(ends, PathEnds::Clamped | PathEnds::Repeat);
+    idle.then(|| {
+        let (kind, ends) = (kind.name(), ends.name());
+        let message = format!("--path-ends {ends} changes nothing: only catmull-rom paths have ends to shape, a {kind} path is what its points say");
+        Warning::new("IDLE_ENDS", message)
+    })
 }
 
 /// Keys so close that some viewers merge them.

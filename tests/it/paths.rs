@@ -197,3 +197,48 @@ fn time_scale_is_for_everything() {
     assert_eq!(json["seconds"].as_f64(), Some(10.0), "the flight's 40 s are longer than the keys'");
     run(["check", text(&output), "--against", text(&chain), "--against", text(&way)]).exits(0);
 }
+
+#[test]
+fn ends_that_a_path_does_not_have_are_warned_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("out.glb");
+    for (name, ends, warned) in
+        [("bezier", "clamped", true), ("bezier", "closed", false), ("flight", "clamped", false)]
+    {
+        let (input, said) = (path(name), ["--path-ends", ends]);
+        let made = run(["convert", text(&input), "-o", text(&output)].iter().chain(&said)).exits(0);
+        assert_eq!(made.stderr.contains("[IDLE_ENDS]"), warned, "{name} {ends}: {}", made.stderr);
+    }
+}
+
+#[test]
+fn angles_without_times_last_as_long_as_the_path() {
+    let folder = tempfile::tempdir().unwrap();
+    let (angles, output) = (folder.path().join("angles.dat"), folder.path().join("out.glb"));
+    fs::write(&angles, "# euler\n0 0 0\n0 0 90\n0 0 90\n").unwrap();
+    let (bezier, made) = (path("bezier"), text(&output));
+    run(["convert", text(&angles), "--path", text(&bezier), "-o", made]).exits(0);
+    run(["check", made, "--against", text(&angles), "--against", text(&bezier)]).exits(0);
+    let table = run([
+        "sample",
+        text(&angles),
+        "--path",
+        text(&bezier),
+        "--count",
+        "2",
+        "--as",
+        "euler",
+        "--frame",
+        "frd",
+    ]);
+    let yaw = |row: usize| -> f64 {
+        let row = table.out().lines().nth(1 + row).unwrap().to_owned();
+        row.split(',').nth(3).unwrap().parse().unwrap()
+    };
+    // Half way along the path, after 7.5 s, is the second of three keys.
+    assert!((yaw(1) - 90.0).abs() < 1e-9 && (yaw(2) - 90.0).abs() < 1e-9, "{}", table.out());
+    // One that has a time of its own keeps it, and holds; the summary says so.
+    fs::write(&angles, "# euler 6\n0 0 0\n0 0 90\n0 0 90\n").unwrap();
+    let said = run(["convert", text(&angles), "--path", text(&bezier), "-o", made]).exits(0);
+    assert!(said.stderr.contains("rotations end at 6 s and hold"), "{}", said.stderr);
+}
