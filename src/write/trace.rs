@@ -59,7 +59,8 @@ impl Scene {
         self.materials.push(MARKER_COLOUR);
         self.meshes.push(marker(self.materials.len() - 1));
         let shape = Some(Shape::Mesh(self.meshes.len() - 1));
-        let scale = (MARKER * extent(trace)) as f32;
+        // A path that stands still is marked where the object is, and smaller.
+        let scale = (MARKER * extent(trace).max(self.size)) as f32;
         let scale = if scale.is_normal() { scale } else { 1.0 };
         for (i, point) in trace.controls.iter().enumerate() {
             let (name, translation) = (format!("control-{}", i + 1), point.as_vec3());
