@@ -4,11 +4,13 @@
 //! chunks that reach the caller in order, and says how far a viewer's playback of the
 //! written numbers can be from the curve. Memory does not grow with the output.
 
-mod deviation;
+pub(crate) mod blend;
+pub(crate) mod deviation;
 mod fps;
 mod rotations;
 mod timeline;
 mod translations;
+pub(crate) mod worst;
 
 pub use fps::{Fps, NotARate};
 pub use rotations::{Rotation, Steps, TrackFacts, rotations};

@@ -43,6 +43,8 @@ pub struct TrackFacts {
     /// An upper bound of the angle between the motion and the playback of its written
     /// samples by slerp, degrees; none for a function that nothing is known of.
     pub deviation: Option<f64>,
+    /// The same for players that blend the four numbers and normalise, degrees.
+    pub nlerp: Option<f64>,
     /// Steps from sample to sample; the ramp of a jump does not count.
     pub steps: Steps,
 }
@@ -76,11 +78,13 @@ pub fn rotations<E>(
         turned ^= samples.turned;
         let known = &mut facts[track];
         // f64::max would hide a chunk of which nothing is known.
-        known.deviation = match (chunk, known.deviation, samples.facts.deviation) {
+        let worst = |known: Option<f64>, now: Option<f64>| match (chunk, known, now) {
             (0, _, first) => first,
             (_, Some(a), Some(b)) => Some(a.max(b)),
             _ => None,
         };
+        known.deviation = worst(known.deviation, samples.facts.deviation);
+        known.nlerp = worst(known.nlerp, samples.facts.nlerp);
         known.steps = known.steps.and(samples.facts.steps);
         sink(&samples.rotations)
     })?;
@@ -115,16 +119,20 @@ fn sample(rotation: &Rotation, timeline: &Timeline, chunk: usize) -> Chunk {
     };
     let mut rotations: Vec<[f32; 4]> = exact.iter().map(|q| q.to_xyzw().map(|x| x as f32)).collect();
     let turned = align(&mut rotations);
-    let bound = |motion| {
-        let stretch = Stretch { motion, times: &times, exact: &exact, written: &rotations };
-        deviation::upper_bound(&stretch).to_degrees()
-    };
     let facts = match rotation {
         Rotation::Motion(motion) => {
             let ramp = motion.ramp().map(|start| (start, motion.times()[1]));
-            TrackFacts { deviation: Some(bound(motion)), steps: steps(ramp, &times, &rotations) }
+            let stretch = Stretch { motion, times: &times, exact: &exact, written: &rotations };
+            let bounds = deviation::upper_bounds(&stretch);
+            TrackFacts {
+                deviation: Some(bounds.slerp.to_degrees()),
+                nlerp: Some(bounds.nlerp.to_degrees()),
+                steps: steps(ramp, &times, &rotations),
+            }
         }
-        Rotation::Function(_) => TrackFacts { deviation: None, steps: steps(None, &times, &rotations) },
+        Rotation::Function(_) => {
+            TrackFacts { steps: steps(None, &times, &rotations), ..TrackFacts::default() }
+        }
     };
     rotations.drain(..usize::from(before.is_some()));
     Chunk { rotations, turned, facts }

@@ -1,0 +1,175 @@
+//! The largest value of a distance over time, by branch and bound.
+//!
+//! A stretch of time is done once its upper bound is little above the worst that was
+//! found anywhere; any other is halved.
+
+use crate::curve::Rates;
+
+/// How much the bound may exceed the worst that was found.
+const SLACK: f64 = 1.05;
+/// How often a stretch is halved at most.
+const DEPTH: u32 = 14;
+/// What tighter rates can be hoped to leave of known ones.
+const HOPE: f64 = 0.5;
+
+/// Two times, with the distance at each.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Part {
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+    pub(crate) at_from: f64,
+    pub(crate) at_to: f64,
+}
+
+/// A distance as a function of time, which can be bounded from rates of what moves.
+pub(crate) trait Gap {
+    /// The distance at a time.
+    fn at(&self, t: f64) -> f64;
+    /// Rates between two times; they may cost much.
+    fn rates(&self, from: f64, to: f64) -> Rates;
+    /// An upper bound of the distance on a part, from rates that hold there.
+    fn bound(&self, part: &Part, rates: Rates) -> f64;
+}
+
+/// The worst of all stretches so far.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Worst {
+    /// The largest distance that was found.
+    pub(crate) found: f64,
+    /// The largest that was not excluded.
+    bound: f64,
+    /// What is not worth refining.
+    negligible: f64,
+    /// What the bound is to stay within, if it can be.
+    limit: f64,
+}
+
+impl Worst {
+    /// Nothing is known; distances below `negligible` are not refined.
+    pub(crate) fn new(negligible: f64) -> Worst {
+        Worst { found: 0.0, bound: 0.0, negligible, limit: f64::INFINITY }
+    }
+
+    /// The same, refined until the bound is within a limit, or something beyond it found.
+    pub(crate) fn within(self, limit: f64) -> Worst {
+        Worst { limit, ..self }
+    }
+
+    /// Takes note of a distance.
+    pub(crate) fn note(&mut self, distance: f64) {
+        self.found = self.found.max(distance);
+    }
+
+    /// No distance so far is larger.
+    pub(crate) fn bound(&self) -> f64 {
+        self.bound.max(self.found)
+    }
+
+    /// Whether a bound is near enough to the worst that was found.
+    pub(crate) fn accepts(&self, bound: f64) -> bool {
+        bound <= (SLACK * self.found.max(self.negligible)).min(self.limit)
+    }
+
+    /// Takes the bound of a stretch that is done.
+    pub(crate) fn settle(&mut self, bound: f64) {
+        self.bound = self.bound.max(bound);
+    }
+
+    /// Bounds a gap on a part from rates that hold there; for the first `cheap` halvings
+    /// without asking for the part's own.
+    pub(crate) fn search(&mut self, gap: &impl Gap, part: Part, known: Rates, cheap: u32) {
+        self.part(gap, part, known, (0, cheap));
+    }
+
+    fn part(&mut self, gap: &impl Gap, part: Part, known: Rates, (level, cheap): (u32, u32)) {
+        let mut rates = known;
+        let mut bound = gap.bound(&part, rates);
+        if !self.accepts(bound) && level >= cheap && self.hopeful(gap, &part, rates) {
+            rates = rates.and(gap.rates(part.from, part.to));
+            bound = bound.min(gap.bound(&part, rates));
+        }
+        if self.accepts(bound) || level == DEPTH || self.found > self.limit {
+            self.settle(bound);
+            return;
+        }
+        let middle = 0.5 * (part.from + part.to);
+        let at_middle = gap.at(middle);
+        self.note(at_middle);
+        let level = (level + 1, cheap);
+        self.part(gap, Part { to: middle, at_to: at_middle, ..part }, rates, level);
+        self.part(gap, Part { from: middle, at_from: at_middle, ..part }, rates, level);
+    }
+
+    /// Whether rates of the part alone might do.
+    fn hopeful(&self, gap: &impl Gap, part: &Part, rates: Rates) -> bool {
+        let hoped = Rates { speed: rates.speed, acceleration: HOPE * rates.acceleration };
+        !rates.acceleration.is_finite() || self.accepts(gap.bound(part, hoped))
+    }
+}
+
+/// The peak of the parabola through a at one end and b at the other that rises by
+/// `sagitta` above the middle of their chord.
+pub(crate) fn parabola_peak(a: f64, b: f64, sagitta: f64) -> f64 {
+    let slope = b - a;
+    if slope.abs() >= 4.0 * sagitta {
+        a.max(b)
+    } else {
+        0.5 * (a + b) + sagitta + slope * slope / (16.0 * sagitta)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// |c + a cos t|, whose second derivative is at most a.
+    struct Wave {
+        mean: f64,
+        swing: f64,
+    }
+
+    impl Gap for Wave {
+        fn at(&self, t: f64) -> f64 {
+            (self.mean + self.swing * t.cos()).abs()
+        }
+
+        fn rates(&self, from: f64, to: f64) -> Rates {
+            let around = |x: f64| (x.cos().abs() + 0.5 * (to - from)).min(1.0);
+            let acceleration = self.swing * around(0.5 * (from + to));
+            Rates { speed: self.swing, acceleration }
+        }
+
+        fn bound(&self, part: &Part, rates: Rates) -> f64 {
+            let h = part.to - part.from;
+            parabola_peak(part.at_from, part.at_to, h * h / 8.0 * rates.acceleration)
+        }
+    }
+
+    fn searched(wave: &Wave, worst: Worst) -> Worst {
+        let (from, to) = (0.5, 7.0);
+        let mut worst = worst;
+        let part = Part { from, to, at_from: wave.at(from), at_to: wave.at(to) };
+        worst.note(part.at_from.max(part.at_to));
+        let rates = Rates { speed: wave.swing, acceleration: wave.swing };
+        worst.search(wave, part, rates, 2);
+        worst
+    }
+
+    #[test]
+    fn bound_is_above_the_peak_and_near_it() {
+        for (mean, swing) in [(0.0, 1.0), (0.3, 2.0), (-5.0, 0.1), (1.0, 1e-6)] {
+            let peak = f64::abs(mean) + swing;
+            let bound = searched(&Wave { mean, swing }, Worst::new(0.0)).bound();
+            assert!(bound >= peak && bound <= SLACK * peak, "{mean} {swing}: {bound}");
+        }
+    }
+
+    #[test]
+    fn limit_a_little_above_the_peak_is_kept() {
+        let wave = Wave { mean: 0.3, swing: 2.0 };
+        let worst = searched(&wave, Worst::new(0.0).within(2.3 + 1e-6));
+        assert!(worst.bound() <= 2.3 + 1e-6 && worst.bound() >= 2.3);
+        let beyond = searched(&wave, Worst::new(0.0).within(2.3 - 1e-3));
+        assert!(beyond.bound() > 2.3 - 1e-3);
+    }
+}
