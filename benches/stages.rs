@@ -1,7 +1,7 @@
 //! How fast each stage is: `cargo bench`. Throughput is per item: bytes parsed, rotations
 //! evaluated, sampled or written.
 
-use dat2glb::convert::{Options, Plan};
+use dat2glb::convert::{Options, Plan, Sampling};
 use dat2glb::curve::{Arc, Ends, Motion, Scheme};
 use dat2glb::math::{Quat, Vec3};
 use dat2glb::moves::{Ground, Inputs, Shape};
@@ -74,7 +74,7 @@ fn sample(bencher: Bencher, scheme: &str) {
     let motion = |track| Rotation::Motion(Motion::new(&clip.times, track, scheme, Ends::Natural));
     let motions: Vec<Rotation> = clip.tracks.iter().map(|track| motion(track)).collect();
     bencher.counter(ItemsCount::new(4 * timeline.len())).bench(|| {
-        rotations(&motions, &timeline, |chunk| {
+        rotations(&motions, &timeline, Default::default(), |chunk| {
             black_box(chunk.to_vec());
             Ok::<(), ()>(())
         })
@@ -93,8 +93,8 @@ fn write(bencher: Bencher, scheme: &str) {
         name: "bench".into(),
         inputs: vec!["bench.dat".into()],
         schemes: vec![Scheme::from_name(scheme).unwrap()],
-        fps: Fps::DEFAULT,
-        key_times: true,
+        sampling: Sampling::Rate { fps: Fps::DEFAULT, key_times: true },
+        writing: Default::default(),
     };
     let inputs = Inputs { keyframes: Some(keyframes), path: None, cameras: Vec::new() };
     let ground = Ground::new(&inputs, Shape::default(), &options.schemes).unwrap();

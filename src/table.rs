@@ -108,7 +108,7 @@ impl<'a> Table<'a> {
     pub fn row(&self, t: f64) -> Vec<f64> {
         let numbers = self.moves.iter().flat_map(|(_, a_move)| match a_move {
             Move::Keys(motion) => self.rotation(motion.at(t)),
-            Move::Attitude(at) => self.rotation(at(t)),
+            Move::Attitude(turn) => self.rotation((turn.at)(t)),
             Move::Travel(travel) => self.frame.vector_from_gltf(travel.at(t)).to_array().to_vec(),
         });
         std::iter::once(t).chain(numbers).collect()

@@ -106,6 +106,7 @@ struct Recipe {
     no_wrap: bool,
     inputs: Vec<Input>,
     deviation_degrees: Vec<Option<f64>>,
+    measured_degrees: Vec<Option<f64>>,
     deviation_units: Option<f64>,
 }
 
@@ -132,6 +133,7 @@ impl Default for Recipe {
             no_wrap: false,
             inputs: Vec::new(),
             deviation_degrees: Vec::new(),
+            measured_degrees: Vec::new(),
             deviation_units: None,
         }
     }
@@ -143,7 +145,18 @@ struct Input {
     blake3: String,
 }
 
+/// How much more than was measured there may be between the places that were looked at: a
+/// parabola that peaks between quarters has at least 60 / 64 of its height at one of them.
+const UNSEEN: f64 = 64.0 / 60.0;
+
 impl Recipe {
+    /// How far each rotation may be off, by what the file states.
+    fn degrees(&self) -> Vec<Option<f64>> {
+        let measured = |i: usize| Some(self.measured_degrees.get(i).copied().flatten()? * UNSEEN);
+        let bounds = self.deviation_degrees.iter().enumerate();
+        bounds.map(|(i, proven)| proven.or_else(|| measured(i))).collect()
+    }
+
     /// What shapes the motion, or the word that this version does not know.
     fn shape(&self) -> Result<Shape, String> {
         fn known<T>(word: &str, from_name: fn(&str) -> Option<T>) -> Result<T, String> {
@@ -228,7 +241,7 @@ struct Limits {
 
 impl Limits {
     fn new(recipe: Option<&Recipe>, given: Given) -> Limits {
-        let degrees = recipe.map(|recipe| recipe.deviation_degrees.clone()).unwrap_or_default();
+        let degrees = recipe.map(Recipe::degrees).unwrap_or_default();
         Limits {
             given,
             degrees: degrees.into_iter(),

@@ -168,8 +168,8 @@ fn convert(job: &Job, options: &Convert) -> Result<(), Failure> {
         cameras: options.scenery.cameras.iter().map(|camera| camera.said.clone()).collect(),
         path_colour: options.scenery.path_colour(),
         schemes: options.schemes(),
-        fps: options.fps,
-        key_times: !options.no_key_times,
+        sampling: options.sampling(),
+        writing: options.writing(),
     };
     let shape = Shape {
         copies: options.scenery.copies(),

@@ -24,8 +24,12 @@ pub(super) struct Summary<'a> {
     /// Points of the path.
     points: usize,
     seconds: f64,
-    /// Poses in all clips together: of each box, and of what goes along the path, copies
-    /// included.
+    /// How long the chain is, if there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    chain_length: Option<f64>,
+    #[serde(skip)]
+    movers: usize,
+    /// Rotations and places in all clips together, copies included.
     samples: u64,
     bytes: u64,
     elapsed_seconds: f64,
@@ -57,7 +61,7 @@ impl<'a> Summary<'a> {
         let keyframes = inputs.keyframes.as_ref().map(|keyframes| &keyframes.clip);
         let points = inputs.path.as_ref().map_or(0, |path| path.points.len());
         let boxes = keyframes.map_or(0, |clip| clip.tracks.len());
-        let moving = (boxes + usize::from(points > 0)) * ground.stream().count;
+        let movers = clips.first().map_or(0, |clip| clip.movers);
         Summary {
             schema: 1,
             input,
@@ -66,7 +70,9 @@ impl<'a> Summary<'a> {
             boxes,
             points,
             seconds: ground.duration(),
-            samples: clips.iter().map(|c| c.samples).sum::<u64>() * moving as u64,
+            chain_length: ground.chain_length(),
+            movers,
+            samples: clips.iter().map(|clip| clip.samples_in_all).sum::<u64>() * ground.stream().count as u64,
             bytes,
             elapsed_seconds: elapsed.as_secs_f64(),
             blender_end_frame: (ground.duration() * BLENDER_FPS).ceil() as u64 + 1,
@@ -100,18 +106,32 @@ impl<'a> Summary<'a> {
 
     fn line(&self) -> String {
         let count = |n: usize, one: &str, many: &str| format!("{n} {}", if n == 1 { one } else { many });
+        let uneven = self.clips.iter().any(|clip| clip.samples_in_all != clip.samples * self.movers as u64);
         let clips = match self.clips {
+            [clip] if uneven => format!("{} samples in all", clip.samples_in_all),
             [clip] => format!("{} samples each", clip.samples),
             clips => format!("{} clips, {} samples in all", clips.len(), self.samples),
         };
-        let deviations: Option<Vec<f64>> = self.clips.iter().map(|clip| clip.deviation_degrees).collect();
-        let deviation = deviations.map_or(String::new(), |all| {
-            format!(", within {}° of the curve", all.into_iter().fold(0.0, f64::max))
+        let worst = |figure: fn(&ClipFacts) -> Option<f64>| -> Option<f64> {
+            let all: Option<Vec<f64>> = self.clips.iter().map(figure).collect();
+            all.map(|all| all.into_iter().fold(0.0, f64::max))
+        };
+        let say = |figure: Option<f64>, what: fn(f64) -> String| figure.map_or(String::new(), what);
+        let deviation = say(worst(|clip| clip.deviation_degrees), |x| format!(", within {x}° of the curve"));
+        let measured =
+            say(worst(|clip| clip.measured_degrees), |x| format!(", {x}° off where it was looked at"));
+        let distance = say(worst(|clip| clip.deviation_units), |x| format!(", within {x} units of the path"));
+        let moved = say(worst(|clip| clip.keys_moved_degrees), |x| format!(", keys moved by up to {x}°"));
+        let displacement = say(worst(|clip| clip.displacement_units), |x| {
+            format!(", corners within {x} units of where they should be")
         });
-        let strayed: Option<Vec<f64>> = self.clips.iter().map(|clip| clip.deviation_units).collect();
-        let distance = strayed.map_or(String::new(), |all| {
-            format!(", within {} units of the path", all.into_iter().fold(0.0, f64::max))
-        });
+        let displacement = match self.chain_length {
+            Some(length) if !displacement.is_empty() => {
+                let share = worst(|clip| clip.displacement_units).unwrap_or_default() / length;
+                format!("{displacement} ({:.1e} of the chain's length)", share)
+            }
+            _ => displacement,
+        };
         let mut parts = Vec::new();
         if self.boxes > 0 {
             parts.extend([count(self.keys, "key", "keys"), count(self.boxes, "box", "boxes")]);
@@ -120,7 +140,7 @@ impl<'a> Summary<'a> {
             parts.push(count(self.points, "point", "points"));
         }
         format!(
-            "{}: {}, {} s, {clips}, {}{deviation}{distance}, {:.3} s\n\
+            "{}: {}, {} s, {clips}, {}{deviation}{measured}{distance}{moved}{displacement}, {:.3} s\n\
              Blender: set the scene's end to frame {} at {BLENDER_FPS} fps",
             self.output,
             parts.join(", "),

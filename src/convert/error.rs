@@ -1,5 +1,6 @@
 //! Why there is no output.
 
+use crate::reduce;
 use crate::sample::{Fps, TooFine};
 
 /// Why keyframes and options make no file.
@@ -43,6 +44,22 @@ pub enum Error {
         /// Whether there are schemes to leave out.
         several_schemes: bool,
     },
+    /// A tolerance that cannot be kept.
+    #[error("{error}{}", advice_on_coding(*.reserve))]
+    Fewest {
+        /// Why.
+        error: reduce::Error,
+        /// The part of the tolerance that 16-bit numbers take.
+        reserve: f64,
+    },
+}
+
+fn advice_on_coding(reserve: f64) -> String {
+    if reserve > 0.0 {
+        format!(" (--quantize alone takes {reserve:.1e}°: choose a larger tolerance, or leave it out)")
+    } else {
+        String::new()
+    }
 }
 
 fn advice(largest_fps: Option<Fps>, key_times: bool) -> String {

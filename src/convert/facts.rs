@@ -12,11 +12,30 @@ pub struct ClipFacts {
     pub name: String,
     /// Its scheme.
     pub scheme: &'static str,
-    /// Samples of each node.
+    /// Samples of the node that has the most.
     pub samples: u64,
+    /// Samples of all rotations and places together.
+    pub samples_in_all: u64,
+    /// How many rotations and places.
+    #[serde(skip)]
+    pub movers: usize,
     /// An upper bound of the angle between playback (slerp) and the curve, degrees: the
     /// largest of all rotations. None where one of them has none, or nothing turns.
     pub deviation_degrees: Option<f64>,
+    /// The same for players that blend the four numbers and normalise, as Blender does.
+    pub nlerp_degrees: Option<f64>,
+    /// Where a rotation has no such bound, the largest angle that was found at samples and
+    /// between them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub measured_degrees: Option<f64>,
+    /// How far playback is from the input's keys at most, degrees, where keys were chosen
+    /// by a tolerance.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub keys_moved_degrees: Option<f64>,
+    /// An upper bound of how far a corner of the chain can be from where it should be,
+    /// units.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub displacement_units: Option<f64>,
     /// An upper bound of the distance between playback and the path, where there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub deviation_units: Option<f64>,
@@ -56,6 +75,8 @@ pub(super) struct Seen {
     pub(super) tracks: Vec<TrackFacts>,
     /// Upper bounds of the distance between playback and path.
     pub(super) distances: Vec<f64>,
+    /// How far playback is from keys, degrees, where it does not run through them.
+    pub(super) keys_moved: Option<f64>,
 }
 
 /// What copies add, whose times are rounded once more: by rotation, and along the path.
@@ -69,8 +90,11 @@ impl Found {
     /// Figures of the most digits.
     pub(super) fn widest(tracks: usize, paths: usize, cameras: usize) -> Found {
         let widest = TrackFacts { deviation: Some(-f64::MIN_POSITIVE), ..TrackFacts::default() };
-        let seen =
-            |tracks, paths| Seen { tracks: vec![widest; tracks], distances: vec![-f64::MIN_POSITIVE; paths] };
+        let seen = |tracks, paths| Seen {
+            tracks: vec![widest; tracks],
+            distances: vec![-f64::MIN_POSITIVE; paths],
+            keys_moved: None,
+        };
         Found { object: seen(tracks, paths), cameras: seen(cameras, cameras) }
     }
 
@@ -81,7 +105,9 @@ impl Found {
     /// With what copies add.
     pub(super) fn late(mut self, late: &Late) -> Found {
         for (track, degrees) in self.object.tracks.iter_mut().zip(&late.degrees) {
-            track.deviation = track.deviation.zip(*degrees).map(|(deviation, late)| deviation + late);
+            for figure in [&mut track.deviation, &mut track.nlerp] {
+                *figure = figure.zip(*degrees).map(|(deviation, late)| deviation + late);
+            }
         }
         self.object.distances.iter_mut().for_each(|distance| *distance += late.units);
         self
@@ -93,14 +119,17 @@ impl ClipFacts {
     pub(super) fn new(
         name: String,
         scheme: &'static str,
-        samples: u64,
+        (samples_in_all, samples): (u64, u64),
         found: Found,
         cameras: Vec<String>,
     ) -> ClipFacts {
-        let Found { object: Seen { tracks, distances }, cameras: watched } = found;
-        let deviations: Option<Vec<f64>> = tracks.iter().map(|track| track.deviation).collect();
+        let Found { object: Seen { tracks, distances, keys_moved: object_moved }, cameras: watched } = found;
         let largest = |values: Vec<f64>| values.into_iter().fold(0.0, f64::max);
-        let turns = deviations.filter(|all| !all.is_empty());
+        let of_all = |figure: fn(&TrackFacts) -> Option<f64>| {
+            let all: Option<Vec<f64>> = tracks.iter().map(figure).collect();
+            all.filter(|all| !all.is_empty()).map(|all| rounded_up(largest(all)))
+        };
+        let measured = tracks.iter().filter_map(|track| track.measured).reduce(f64::max);
         let cameras = cameras.into_iter().zip(watched.tracks.iter().zip(watched.distances));
         let camera = |(name, (track, distance)): (String, (&TrackFacts, f64))| CameraFacts {
             name,
@@ -111,7 +140,13 @@ impl ClipFacts {
             name,
             scheme,
             samples,
-            deviation_degrees: turns.map(|all| rounded_up(largest(all))),
+            samples_in_all,
+            movers: tracks.len() + distances.len(),
+            deviation_degrees: of_all(|track| track.deviation),
+            nlerp_degrees: of_all(|track| track.nlerp),
+            measured_degrees: measured.map(rounded_up),
+            keys_moved_degrees: object_moved.map(rounded_up),
+            displacement_units: None,
             deviation_units: distances.first().copied().map(rounded_up),
             largest_step_degrees: largest(tracks.iter().map(|track| track.steps.worst).collect()),
             cameras: cameras.map(camera).collect(),

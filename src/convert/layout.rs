@@ -1,11 +1,12 @@
 //! What stands in the buffer, in order, known before anything is sampled.
 
 use super::facts::{Found, Late};
-use super::{ClipPlan, Group};
+use super::fewest::{Chosen, Values, bytes};
+use super::{ClipPlan, When};
 use crate::math::Quat;
 use crate::moves::{Move, Mover, Stream};
-use crate::sample::{self, Rotation, Timeline, Travel};
-use crate::write::{Buffer, Channel, Data, Interpolation, Property, Scene};
+use crate::sample::{self, Encoding, Rotation, Timeline, Travel, Writing};
+use crate::write::{Buffer, Channel, Component, Data, Interpolation, Object, Property, Scene};
 use std::io;
 
 /// The buffer after the scene's own bytes, and the channels that refer to it.
@@ -16,6 +17,7 @@ pub(super) struct Layout<'p> {
     /// Bytes of the buffer.
     pub(super) length: u64,
     stream: &'p Stream,
+    encoding: Encoding,
 }
 
 /// A stretch of the buffer that is written at once.
@@ -26,8 +28,8 @@ pub(super) struct Block<'p> {
 
 enum Content<'p> {
     Times(&'p Timeline<'p>),
-    /// The times of a copy, worked out beforehand.
-    CopyTimes(Vec<f32>),
+    /// Times that were worked out beforehand.
+    OwnTimes(Vec<f32>),
     /// Rotations, one track after another.
     Rotations {
         tracks: Vec<Rotation<'p>>,
@@ -41,6 +43,8 @@ enum Content<'p> {
     },
     /// The scales of what is hidden first and seen then.
     Appearance,
+    /// The values of a move that has keys of its own.
+    Chosen(&'p Values),
 }
 
 /// Whose samples a block holds.
@@ -74,30 +78,91 @@ struct Times {
 }
 
 impl<'p> Layout<'p> {
-    pub(super) fn new(scene: &Scene, clips: &'p [ClipPlan<'p>], stream: &'p Stream) -> Layout<'p> {
+    pub(super) fn new(
+        scene: &Scene,
+        clips: &'p [ClipPlan<'p>],
+        stream: &'p Stream,
+        writing: Writing,
+    ) -> Layout<'p> {
         let length = scene.bytes().len() as u64;
-        let mut layout = Layout { blocks: Vec::new(), channels: Vec::new(), length, stream };
-        let mut known: Vec<(&Timeline, Vec<Times>)> = Vec::new();
+        let encoding = writing.encoding;
+        let mut layout = Layout { blocks: Vec::new(), channels: Vec::new(), length, stream, encoding };
+        let mut grids: Vec<(&Timeline, Vec<Times>)> = Vec::new();
+        let mut keys: Vec<(&[f32], Times)> = Vec::new();
         for (i, clip) in clips.iter().enumerate() {
-            let timeline = &clip.object.timeline;
-            let times = match known.iter().find(|(other, _)| other.is_same(timeline)) {
-                Some((_, times)) => times.clone(),
-                None => layout.object_times(i, timeline),
-            };
-            known.push((timeline, times.clone()));
-            let mut channels = layout.object(i, &clip.object, scene, &times);
-            if let Some(group) = &clip.cameras {
-                let shared = known.iter().find(|(other, _)| other.is_same(&group.timeline));
-                let times = match shared {
-                    Some((_, times)) => times[0],
-                    None => layout.times(i, &group.timeline),
-                };
-                known.push((&group.timeline, vec![times]));
-                channels.extend(layout.cameras(i, group, scene, times));
+            let mut channels = Vec::new();
+            match &clip.when {
+                When::Grid { object, cameras } => {
+                    let times = layout.shared(i, object, &mut grids, stream.count);
+                    channels.extend(layout.object(i, clip, object, scene, &times));
+                    if let Some(timeline) = cameras {
+                        let times = layout.shared(i, timeline, &mut grids, 1)[0];
+                        channels.extend(layout.cameras(i, clip, timeline, scene, times));
+                    }
+                }
+                When::Chosen { object, cameras } => {
+                    let root = &scene.objects[0];
+                    let object = clip
+                        .object
+                        .iter()
+                        .zip(object)
+                        .map(|((mover, a_move), chosen)| (node(root, *mover), a_move, chosen));
+                    let cameras = clip
+                        .cameras
+                        .iter()
+                        .zip(cameras)
+                        .map(|((camera, a_move), chosen)| (scene.cameras[*camera], a_move, chosen));
+                    for (node, a_move, chosen) in object.chain(cameras) {
+                        channels.push(layout.chosen(i, node, a_move, chosen, &mut keys));
+                    }
+                }
             }
             layout.channels.push(channels);
         }
         layout
+    }
+
+    /// The times of a timeline and of so many copies, shared with those that have the same.
+    fn shared(
+        &mut self,
+        clip: usize,
+        timeline: &'p Timeline<'p>,
+        known: &mut Vec<(&'p Timeline<'p>, Vec<Times>)>,
+        count: usize,
+    ) -> Vec<Times> {
+        let same =
+            |(other, times): &&(&Timeline, Vec<Times>)| other.is_same(timeline) && times.len() >= count;
+        if let Some((_, times)) = known.iter().find(same) {
+            return times.clone();
+        }
+        let times = self.object_times(clip, timeline, count);
+        known.push((timeline, times.clone()));
+        times
+    }
+
+    /// The channel of a move that has keys of its own.
+    fn chosen(
+        &mut self,
+        clip: usize,
+        node: usize,
+        a_move: &Move,
+        chosen: &'p Chosen,
+        known: &mut Vec<(&'p [f32], Times)>,
+    ) -> Channel {
+        let own = &chosen.times[..];
+        let times = match known.iter().find(|(other, _)| *other == own) {
+            Some((_, times)) => *times,
+            None => {
+                let count = own.len() as u64;
+                let offset = self.add(clip, Content::OwnTimes(own.to_vec()), 4 * count);
+                let times = Times { data: Data { offset, count }, span: [own[0], own[own.len() - 1]] };
+                known.push((own, times));
+                times
+            }
+        };
+        let count = times.data.count;
+        let offset = self.add(clip, Content::Chosen(&chosen.values), count * self.size(a_move));
+        self.channel(node, a_move, times, Data { offset, count })
     }
 
     /// How many rotations and places are written.
@@ -107,7 +172,9 @@ impl<'p> Layout<'p> {
                 tracks.len() as u64 * of.samples(timeline.len() as u64)
             }
             Content::Travel { timeline, of, .. } => of.samples(timeline.len() as u64),
-            Content::Times(_) | Content::CopyTimes(_) | Content::Appearance => 0,
+            Content::Chosen(Values::Rotations(rotations)) => rotations.len() as u64,
+            Content::Chosen(Values::Places(places)) => places.len() as u64,
+            Content::Times(_) | Content::OwnTimes(_) | Content::Appearance => 0,
         };
         self.blocks.iter().map(samples).sum()
     }
@@ -127,14 +194,14 @@ impl<'p> Layout<'p> {
     }
 
     /// The times of an object and of each of its copies.
-    fn object_times(&mut self, clip: usize, timeline: &'p Timeline<'p>) -> Vec<Times> {
+    fn object_times(&mut self, clip: usize, timeline: &'p Timeline<'p>, count: usize) -> Vec<Times> {
         let mut times = vec![self.times(clip, timeline)];
-        let way: Vec<f32> = if self.stream.count > 1 { all(timeline) } else { Vec::new() };
-        for copy in 1..self.stream.count {
+        let way: Vec<f32> = if count > 1 { all(timeline) } else { Vec::new() };
+        for copy in 1..count {
             let own = copy_times(&way, self.stream, copy);
             let span = [own[0], own[own.len() - 1]];
             let count = own.len() as u64;
-            let offset = self.add(clip, Content::CopyTimes(own), 4 * count);
+            let offset = self.add(clip, Content::OwnTimes(own), 4 * count);
             times.push(Times { data: Data { offset, count }, span });
         }
         times
@@ -144,7 +211,8 @@ impl<'p> Layout<'p> {
     fn object(
         &mut self,
         clip: usize,
-        group: &'p Group<'p, Mover>,
+        plan: &'p ClipPlan<'p>,
+        timeline: &'p Timeline<'p>,
         scene: &Scene,
         times: &[Times],
     ) -> Vec<Channel> {
@@ -153,9 +221,10 @@ impl<'p> Layout<'p> {
             Stream { wrap: true, .. } => Whose::Ring,
             Stream { wrap: false, .. } => Whose::Late,
         };
-        let offsets = self.values(clip, group, of);
-        let way: Vec<f32> = if of == Whose::Ring { all(&group.timeline) } else { Vec::new() };
-        let count = group.timeline.len() as u64;
+        let moves: Vec<&Move> = plan.object.iter().map(|(_, a_move)| a_move).collect();
+        let offsets = self.values(clip, &moves, timeline, of);
+        let way: Vec<f32> = if of == Whose::Ring { all(timeline) } else { Vec::new() };
+        let count = timeline.len() as u64;
         let mut channels = Vec::new();
         for (copy, (object, times)) in scene.objects.iter().zip(times).enumerate() {
             let first = match of {
@@ -166,13 +235,9 @@ impl<'p> Layout<'p> {
                 Whose::Late | Whose::Object | Whose::Cameras => 0,
             };
             let count = times.data.count;
-            for ((mover, a_move), offset) in group.moves.iter().zip(&offsets) {
-                let node = match *mover {
-                    Mover::Root => object.root,
-                    Mover::Track(track) => object.turned[track],
-                };
-                let values = Data { offset: offset + first * size(a_move), count };
-                channels.push(channel(node, a_move, *times, values));
+            for ((mover, a_move), offset) in plan.object.iter().zip(&offsets) {
+                let values = Data { offset: offset + first * self.size(a_move), count };
+                channels.push(self.channel(node(object, *mover), a_move, *times, values));
             }
             if copy > 0 && !self.stream.wrap {
                 channels.push(self.appearance(clip, object.root, self.stream.start(copy)));
@@ -184,46 +249,79 @@ impl<'p> Layout<'p> {
     /// Hides a node until it starts.
     fn appearance(&mut self, clip: usize, node: usize, start: f64) -> Channel {
         let span = [0.0, start as f32];
-        let times = self.add(clip, Content::CopyTimes(span.to_vec()), 8);
+        let times = self.add(clip, Content::OwnTimes(span.to_vec()), 8);
         let values = self.add(clip, Content::Appearance, 24);
         let [times, values] = [times, values].map(|offset| Data { offset, count: 2 });
-        Channel { node, property: Property::Scale, interpolation: Interpolation::Step, times, span, values }
+        Channel {
+            node,
+            property: Property::Scale,
+            interpolation: Interpolation::Step,
+            component: Component::F32,
+            times,
+            span,
+            values,
+        }
     }
 
     fn cameras(
         &mut self,
         clip: usize,
-        group: &'p Group<'p, usize>,
+        plan: &'p ClipPlan<'p>,
+        timeline: &'p Timeline<'p>,
         scene: &Scene,
         times: Times,
     ) -> Vec<Channel> {
-        let offsets = self.values(clip, group, Whose::Cameras);
-        let count = group.timeline.len() as u64;
-        let moves = group.moves.iter().zip(offsets);
+        let moves: Vec<&Move> = plan.cameras.iter().map(|(_, a_move)| a_move).collect();
+        let offsets = self.values(clip, &moves, timeline, Whose::Cameras);
+        let count = timeline.len() as u64;
+        let moves = plan.cameras.iter().zip(offsets);
         let channel = |((camera, a_move), offset): (&(usize, Move), u64)| {
-            channel(scene.cameras[*camera], a_move, times, Data { offset, count })
+            self.channel(scene.cameras[*camera], a_move, times, Data { offset, count })
         };
         moves.map(channel).collect()
     }
 
     /// Adds the values of all moves, rotations first, and says where each one's begin.
-    fn values<M>(&mut self, clip: usize, group: &'p Group<'p, M>, of: Whose) -> Vec<u64> {
-        let timeline = &group.timeline;
+    fn values(
+        &mut self,
+        clip: usize,
+        moves: &[&'p Move<'p>],
+        timeline: &'p Timeline<'p>,
+        of: Whose,
+    ) -> Vec<u64> {
         let samples = of.samples(timeline.len() as u64);
-        let moves = || group.moves.iter().map(|(_, a_move)| a_move);
-        let tracks: Vec<Rotation> = moves().filter_map(Move::rotation).collect();
-        let rotations = tracks.len() as u64;
-        let mut offset =
-            self.add(clip, Content::Rotations { tracks, timeline, of }, 16 * samples * rotations);
-        for travel in moves().filter_map(Move::travel) {
+        let tracks: Vec<Rotation> = moves.iter().filter_map(|a_move| a_move.rotation()).collect();
+        let sizes: Vec<u64> = moves.iter().map(|a_move| samples * self.size(a_move)).collect();
+        let rotations = sizes[..tracks.len()].iter().sum();
+        let mut offset = self.add(clip, Content::Rotations { tracks, timeline, of }, rotations);
+        for travel in moves.iter().filter_map(|a_move| a_move.travel()) {
             self.add(clip, Content::Travel { travel, timeline, of }, 12 * samples);
         }
         let mut offsets = Vec::new();
-        for a_move in moves() {
+        for size in sizes {
             offsets.push(offset);
-            offset += size(a_move) * samples;
+            offset += size;
         }
         offsets
+    }
+
+    /// Bytes of one sample.
+    fn size(&self, a_move: &Move) -> u64 {
+        match (a_move, self.encoding) {
+            (Move::Travel(_), _) => 12,
+            (_, Encoding::Float) => 16,
+            (_, Encoding::Normalized16) => 8,
+        }
+    }
+
+    fn channel(&self, node: usize, a_move: &Move, times: Times, values: Data) -> Channel {
+        let (property, component) = match (a_move, self.encoding) {
+            (Move::Travel(_), _) => (Property::Translation, Component::F32),
+            (_, Encoding::Float) => (Property::Rotation, Component::F32),
+            (_, Encoding::Normalized16) => (Property::Rotation, Component::I16),
+        };
+        let Times { data, span } = times;
+        Channel { node, property, interpolation: Interpolation::Linear, component, times: data, span, values }
     }
 
     /// By how much copies can be late or early, their times being rounded once more, and
@@ -252,6 +350,7 @@ impl Block<'_> {
     /// Writes the block, and notes what is found out.
     pub(super) fn write(
         &self,
+        writing: Writing,
         buffer: &mut impl Buffer,
         progress: &mut impl FnMut(u64),
         found: &mut [Found],
@@ -262,20 +361,30 @@ impl Block<'_> {
                 let times: Vec<[f32; 1]> = timeline.chunk(chunk).1.into_iter().map(|t| [t]).collect();
                 buffer.append(&little_endian(&times))
             }),
-            Content::CopyTimes(times) => {
+            Content::OwnTimes(times) => {
                 let times: Vec<[f32; 1]> = times.iter().map(|&t| [t]).collect();
                 buffer.append(&little_endian(&times))
+            }
+            Content::Chosen(Values::Rotations(rotations)) => {
+                progress(rotations.len() as u64);
+                buffer.append(&bytes(rotations, writing.encoding))
+            }
+            Content::Chosen(Values::Places(places)) => {
+                progress(places.len() as u64);
+                buffer.append(&little_endian(places))
             }
             Content::Appearance => buffer.append(&little_endian(&[[0f32; 3], [1.0; 3]])),
             Content::Rotations { tracks, timeline, of } => {
                 let mut append = |rotations: &[[f32; 4]]| {
                     progress(rotations.len() as u64);
-                    buffer.append(&little_endian(rotations))
+                    buffer.append(&bytes(rotations, writing.encoding))
                 };
                 let facts = match of {
-                    Whose::Ring => rotations_twice(tracks, timeline, &mut append)?,
-                    Whose::Late => sample::rotations(tracks, timeline, first_twice(timeline.len(), append))?,
-                    Whose::Object | Whose::Cameras => sample::rotations(tracks, timeline, append)?,
+                    Whose::Ring => rotations_twice(tracks, timeline, writing, &mut append)?,
+                    Whose::Late => {
+                        sample::rotations(tracks, timeline, writing, first_twice(timeline.len(), append))?
+                    }
+                    Whose::Object | Whose::Cameras => sample::rotations(tracks, timeline, writing, append)?,
                 };
                 found.of(*of == Whose::Cameras).tracks = facts;
                 Ok(())
@@ -297,7 +406,9 @@ impl Block<'_> {
                     }
                     _ => sample::translations(*travel, timeline, append)?,
                 };
-                found.of(*of == Whose::Cameras).distances.push(distance);
+                if writing.bound {
+                    found.of(*of == Whose::Cameras).distances.push(distance);
+                }
                 Ok(())
             }
         }
@@ -308,18 +419,19 @@ impl Block<'_> {
 fn rotations_twice(
     tracks: &[Rotation],
     timeline: &Timeline,
+    writing: Writing,
     append: &mut impl FnMut(&[[f32; 4]]) -> io::Result<()>,
 ) -> io::Result<Vec<sample::TrackFacts>> {
     let mut facts = Vec::new();
     for track in tracks {
         let (mut left, mut last) = (timeline.len() - 1, None);
-        sample::rotations(&[*track], timeline, |rotations| {
+        sample::rotations(&[*track], timeline, writing, |rotations| {
             let rotations = all_but_last(rotations, &mut left);
             last = rotations.last().copied().or(last);
             append(rotations)
         })?;
         let mut turn = None;
-        facts.extend(sample::rotations(&[*track], timeline, |rotations| {
+        facts.extend(sample::rotations(&[*track], timeline, writing, |rotations| {
             let follows = |first: [f32; 4]| {
                 let before = last.map_or(first, |before| before).map(f64::from);
                 Quat::from_xyzw(before).dot(Quat::from_xyzw(first.map(f64::from))) >= 0.0
@@ -388,24 +500,15 @@ fn copy_times(way: &[f32], stream: &Stream, copy: usize) -> Vec<f32> {
     times
 }
 
-fn channel(node: usize, a_move: &Move, times: Times, values: Data) -> Channel {
-    let property = match a_move {
-        Move::Travel(_) => Property::Translation,
-        Move::Keys(_) | Move::Attitude(_) => Property::Rotation,
-    };
-    let Times { data, span } = times;
-    Channel { node, property, interpolation: Interpolation::Linear, times: data, span, values }
-}
-
-/// Bytes of one sample.
-fn size(a_move: &Move) -> u64 {
-    match a_move {
-        Move::Travel(_) => 12,
-        Move::Keys(_) | Move::Attitude(_) => 16,
+/// The node of an object that moves.
+fn node(object: &Object, mover: Mover) -> usize {
+    match mover {
+        Mover::Root => object.root,
+        Mover::Track(track) => object.turned[track],
     }
 }
 
-fn little_endian<const N: usize>(values: &[[f32; N]]) -> Vec<u8> {
+pub(super) fn little_endian<const N: usize>(values: &[[f32; N]]) -> Vec<u8> {
     let bits: Vec<u32> = values.as_flattened().iter().map(|x| x.to_bits().to_le()).collect();
     bytemuck::cast_slice(&bits).to_vec()
 }

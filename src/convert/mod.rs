@@ -5,21 +5,24 @@
 
 mod error;
 mod facts;
+mod fewest;
 mod layout;
 mod recipe;
 mod scene;
 
 pub use error::Error;
 pub use facts::{CameraFacts, ClipFacts};
+pub use fewest::Fewest;
 
 use crate::clip::{Clip, Through, Warning};
 use crate::curve::{self, Scheme};
 use crate::moves::{Ground, Move, Mover};
 use crate::path::{Kind, PathEnds};
 use crate::read::Order;
-use crate::sample::{Fps, Timeline, TooFine};
+use crate::sample::{Fps, Timeline, TooFine, Writing};
 use crate::write::{Animation, Bin, Buffer, Colour, Glb, LARGEST_GLB, Scene, document, glb_size};
 use facts::Found;
+use fewest::Chosen;
 use layout::Layout;
 use recipe::recipe;
 use std::io::{self, Seek, Write};
@@ -39,10 +42,24 @@ pub struct Options {
     pub path_colour: Option<Colour>,
     /// One animation a scheme.
     pub schemes: Vec<Scheme>,
-    /// Samples per second.
-    pub fps: Fps,
-    /// Whether every key time is a sample too.
-    pub key_times: bool,
+    /// When samples are taken.
+    pub sampling: Sampling,
+    /// What numbers stand for rotations, and whether to find out how far playback is off.
+    pub writing: Writing,
+}
+
+/// When samples are taken.
+#[derive(Clone, Copy, Debug)]
+pub enum Sampling {
+    /// At a rate.
+    Rate {
+        /// Samples per second.
+        fps: Fps,
+        /// Whether every key time is a sample too.
+        key_times: bool,
+    },
+    /// Wherever they are needed.
+    Fewest(Fewest),
 }
 
 /// An output that is known but for its samples.
@@ -59,25 +76,86 @@ pub struct Plan<'a> {
 /// One clip: what every node does by a scheme, and when it is sampled.
 struct ClipPlan<'a> {
     scheme: Scheme,
-    object: Group<'a, Mover>,
-    /// Cameras that move.
-    cameras: Option<Group<'a, usize>>,
+    object: Vec<(Mover, Move<'a>)>,
+    /// What moves cameras, rotations first.
+    cameras: Vec<(usize, Move<'a>)>,
+    when: When<'a>,
 }
 
-impl ClipPlan<'_> {
+/// When moves are sampled.
+enum When<'a> {
+    /// All of the object at the same times, and all cameras.
+    Grid { object: Timeline<'a>, cameras: Option<Timeline<'a>> },
+    /// Each move by keys of its own.
+    Chosen { object: Vec<Chosen>, cameras: Vec<Chosen> },
+}
+
+impl<'a> ClipPlan<'a> {
+    fn new(ground: &'a Ground<'a>, scheme: Scheme, options: &Options) -> Result<ClipPlan<'a>, Unsampled> {
+        let (object, cameras) = (ground.moves(scheme), ground.camera_moves(scheme));
+        let when = match &options.sampling {
+            &Sampling::Rate { fps, key_times } => When::Grid {
+                object: ground.timeline(scheme, fps, key_times)?,
+                cameras: ground.camera_timeline(fps, key_times)?,
+            },
+            Sampling::Fewest(fewest) => {
+                let encoding = options.writing.encoding;
+                When::Chosen {
+                    object: fewest::object(ground, &object, fewest, encoding)?,
+                    cameras: fewest::cameras(ground, &cameras, fewest, encoding)?,
+                }
+            }
+        };
+        Ok(ClipPlan { scheme, object, cameras, when })
+    }
+
+    /// Samples of all of the object's moves together, and of the one that has the most.
+    fn samples(&self) -> (u64, u64) {
+        match &self.when {
+            When::Grid { object, .. } => {
+                let each = object.len() as u64;
+                (each * self.object.len() as u64, each)
+            }
+            When::Chosen { object, .. } => {
+                let counts = object.iter().map(|chosen| chosen.times.len() as u64);
+                (counts.clone().sum(), counts.max().unwrap_or(0))
+            }
+        }
+    }
+
+    /// What was found out before anything is written.
+    fn found(&self) -> Found {
+        match &self.when {
+            When::Grid { .. } => Found::default(),
+            When::Chosen { object, cameras } => {
+                Found { object: fewest::seen(object), cameras: fewest::seen(cameras) }
+            }
+        }
+    }
+
     /// What would be found out if all figures took the most digits.
     fn widest(&self) -> Found {
-        let travels = |a_move: &Move| a_move.travel().is_some();
-        let paths = self.object.moves.iter().filter(|(_, a_move)| travels(a_move)).count();
-        let cameras = self.cameras.as_ref().map_or(0, |group| group.moves.len() / 2);
-        Found::widest(self.object.moves.len() - paths, paths, cameras)
+        let paths = self.object.iter().filter(|(_, a_move)| a_move.travel().is_some()).count();
+        Found::widest(self.object.len() - paths, paths, self.cameras.len() / 2)
     }
 }
 
-/// Moves that are sampled at the same times.
-struct Group<'a, M> {
-    moves: Vec<(M, Move<'a>)>,
-    timeline: Timeline<'a>,
+/// Why a clip cannot be sampled.
+enum Unsampled {
+    TooFine(TooFine),
+    Fewest(Error),
+}
+
+impl From<TooFine> for Unsampled {
+    fn from(error: TooFine) -> Unsampled {
+        Unsampled::TooFine(error)
+    }
+}
+
+impl From<Error> for Unsampled {
+    fn from(error: Error) -> Unsampled {
+        Unsampled::Fewest(error)
+    }
 }
 
 impl<'a> Plan<'a> {
@@ -89,16 +167,15 @@ impl<'a> Plan<'a> {
         options: &'a Options,
     ) -> Result<Plan<'a>, Error> {
         let schemes = if ground.has_schemes() { &options.schemes[..] } else { &options.schemes[..1] };
-        let clip = |&scheme: &Scheme| {
-            let timeline = ground.timeline(scheme, options.fps, options.key_times)?;
-            let cameras = ground.camera_timeline(options.fps, options.key_times)?;
-            let cameras = cameras.map(|timeline| Group { moves: ground.camera_moves(scheme), timeline });
-            Ok(ClipPlan { scheme, object: Group { moves: ground.moves(scheme), timeline }, cameras })
-        };
-        let clips = schemes.iter().map(clip).collect::<Result<_, _>>();
-        let clips = clips.map_err(|error| too_fine(error, ground, source_name))?;
-        let warnings = warnings(ground, options);
         let scene = scene::scene(ground, options.path_colour);
+        let clip = |&scheme: &Scheme| {
+            ClipPlan::new(ground, scheme, options).map_err(|error| match error {
+                Unsampled::TooFine(error) => too_fine(error, ground, source_name),
+                Unsampled::Fewest(error) => error,
+            })
+        };
+        let clips = schemes.iter().map(clip).collect::<Result<_, _>>()?;
+        let warnings = warnings(ground, options);
         Ok(Plan { ground, source_name, options, scene, clips, warnings })
     }
 
@@ -151,21 +228,22 @@ impl<'a> Plan<'a> {
         }
         // What is not a scene's grows with the number of samples.
         let still = self.scene.bytes().len() as u64;
-        let longest = self.clips.iter().map(|clip| clip.object.timeline.len()).max().unwrap_or(1);
+        let longest = self.clips.iter().map(|clip| clip.samples().1).max().unwrap_or(1);
         let sample = (layout.length - still) as f64 / longest as f64;
         let samples = (LARGEST_GLB - glb_size(json, still)) as f64 / sample;
         let rate = |others: usize| Fps::at_most((samples - others as f64) / self.ground.duration());
         // Both ends, and the start of a ramp.
-        let with_keys = rate(self.ground.knots().len() + 3).filter(|_| self.options.key_times);
+        let key_times_asked = matches!(self.options.sampling, Sampling::Rate { key_times: true, .. });
+        let with_keys = rate(self.ground.knots().len() + 3).filter(|_| key_times_asked);
         let source_name = self.source_name.to_owned();
         let largest_fps = with_keys.or_else(|| rate(3));
-        let key_times = with_keys.is_some() || !self.options.key_times;
+        let key_times = with_keys.is_some() || !key_times_asked;
         let several_schemes = self.clips.len() > 1;
         Err(Error::TooLarge { source_name, bytes, largest_fps, key_times, several_schemes })
     }
 
     fn layout(&self) -> Layout<'_> {
-        Layout::new(&self.scene, &self.clips, self.ground.stream())
+        Layout::new(&self.scene, &self.clips, self.ground.stream(), self.options.writing)
     }
 
     /// An upper bound of the JSON's length: that of a document whose figures all take the
@@ -193,25 +271,38 @@ impl<'a> Plan<'a> {
         mut progress: impl FnMut(u64),
     ) -> io::Result<Vec<ClipFacts>> {
         buffer.append(&self.scene.bytes())?;
-        let mut found: Vec<Found> = self.clips.iter().map(|_| Found::default()).collect();
+        let mut found: Vec<Found> = self.clips.iter().map(ClipPlan::found).collect();
         for block in &layout.blocks {
-            block.write(buffer, &mut progress, &mut found)?;
+            block.write(self.options.writing, buffer, &mut progress, &mut found)?;
         }
         let facts = found.into_iter().enumerate();
         Ok(facts.map(|(clip, found)| self.facts(clip, layout, found)).collect())
     }
 
+    /// An upper bound of how far a corner of the chain can be from where it should be: each
+    /// rotation that is off turns all that hangs below.
+    fn displacement(&self, plan: &ClipPlan, facts: &ClipFacts) -> Option<f64> {
+        self.ground.chain_length()?;
+        let turns = plan.object.iter().filter(|(_, a_move)| a_move.rotation().is_some());
+        let off = turns.zip(&facts.tracks).map(|((mover, _), track)| {
+            track.deviation.map(|degrees| degrees.to_radians() * self.ground.reach_below(*mover))
+        });
+        let turned: f64 = off.sum::<Option<f64>>()?;
+        (!facts.tracks.is_empty()).then(|| facts::rounded_up(turned + facts.deviation_units.unwrap_or(0.0)))
+    }
+
     fn facts(&self, clip: usize, layout: &Layout, found: Found) -> ClipFacts {
-        let ClipPlan { scheme, cameras, object } = &self.clips[clip];
+        let plan = &self.clips[clip];
         let name = match self.clips.as_slice() {
             [_] => self.options.name.clone(),
-            _ => format!("{}-{}", self.options.name, scheme.name()),
+            _ => format!("{}-{}", self.options.name, plan.scheme.name()),
         };
-        let turned = cameras.iter().flat_map(|group| &group.moves[..group.moves.len() / 2]);
+        let turned = &plan.cameras[..plan.cameras.len() / 2];
         let node = |camera: usize| &self.scene.nodes[self.scene.cameras[camera]];
-        let names = turned.map(|&(camera, _)| node(camera).name.clone()).collect();
-        let found = found.late(&layout.lateness(&object.moves));
-        ClipFacts::new(name, scheme.name(), object.timeline.len() as u64, found, names)
+        let cameras = turned.iter().map(|&(camera, _)| node(camera).name.clone()).collect();
+        let found = found.late(&layout.lateness(&plan.object));
+        let facts = ClipFacts::new(name, plan.scheme.name(), plan.samples(), found, cameras);
+        ClipFacts { displacement_units: self.displacement(plan, &facts), ..facts }
     }
 }
 
@@ -269,7 +360,8 @@ fn close_keys(clip: &Clip, options: &Options) -> Option<Warning> {
     const APART: f64 = 1e-3;
     let gap = |i: usize| clip.times[i + 1] - clip.times[i];
     let close = || (0..clip.times.len() - 1).filter(|&i| gap(i) < APART * (1.0 - 1e-9));
-    let count = if options.key_times { close().count() } else { 0 };
+    let key_times = matches!(options.sampling, Sampling::Rate { key_times: true, .. });
+    let count = if key_times { close().count() } else { 0 };
     let worst = close().min_by(|&a, &b| gap(a).total_cmp(&gap(b)))?;
     (count > 0).then(|| {
         let message = format!(

@@ -1,11 +1,12 @@
 //! What a clip of the output is made from and how, as its `extras` say it.
 
-use super::Options;
 use super::facts::{ClipFacts, rounded_up};
+use super::{Fewest, Options, Sampling};
 use crate::curve::Scheme;
 use crate::moves::{Ground, Orient};
 use crate::path::{Ease, PathEnds};
 use crate::read::Order;
+use crate::sample::{Encoding, TrackFacts};
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -14,8 +15,14 @@ struct Recipe<'a> {
     dat2glb: &'a str,
     scheme: &'a str,
     ends: &'a str,
-    fps: String,
-    key_times: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fps: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    key_times: Option<bool>,
+    #[serde(flatten)]
+    fewest: Option<FewestRecipe>,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    quantized: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     quat_order: Option<&'a str>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -35,10 +42,32 @@ struct Recipe<'a> {
     inputs: Vec<Input<'a>>,
     /// Upper bounds of the angle between playback (slerp) and the curve, degrees, by box
     /// and last of the root, where it turns; null where nothing is known between samples.
-    deviation_degrees: Vec<Option<f64>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    deviation_degrees: Option<Vec<Option<f64>>>,
+    /// The same for players that blend the four numbers and normalise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    nlerp_degrees: Option<Vec<Option<f64>>>,
+    /// Where nothing is known between samples, the largest angle that was found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    measured_degrees: Option<Vec<Option<f64>>>,
     /// An upper bound of the distance between playback and the path.
     #[serde(skip_serializing_if = "Option::is_none")]
     deviation_units: Option<f64>,
+    /// An upper bound of how far a corner of the chain can be from where it should be.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    displacement_units: Option<f64>,
+}
+
+/// What is said where keys were chosen by a tolerance.
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct FewestRecipe {
+    tolerance: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tolerance_distance: Option<f64>,
+    max_step: f64,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    on_curve: bool,
 }
 
 /// What is said where there is a path; left out what was not asked for.
@@ -79,12 +108,23 @@ pub(super) fn recipe(ground: &Ground, options: &Options, scheme: Scheme, facts: 
     let inputs = ground.inputs();
     let (shape, stream) = (ground.shape(), ground.stream());
     let copies = stream.count > 1;
+    let (rate, fewest) = match options.sampling {
+        Sampling::Rate { fps, key_times } => (Some((fps, key_times)), None),
+        Sampling::Fewest(fewest) => (None, Some(fewest_recipe(fewest))),
+    };
+    let tracks = |figure: fn(&TrackFacts) -> Option<f64>| {
+        let all = facts.tracks.iter().map(|track| figure(track).map(rounded_up)).collect();
+        Some(all).filter(|_| options.writing.bound)
+    };
+    let measured = facts.tracks.iter().any(|track| track.measured.is_some());
     let recipe = Recipe {
         dat2glb: env!("CARGO_PKG_VERSION"),
         scheme: scheme.name(),
         ends: shape.ends.name(),
-        fps: options.fps.to_string(),
-        key_times: options.key_times,
+        fps: rate.map(|(fps, _)| fps.to_string()),
+        key_times: rate.map(|(_, key_times)| key_times),
+        fewest,
+        quantized: options.writing.encoding == Encoding::Normalized16,
         quat_order: options.quat_order.map(Order::name),
         time_scale: (shape.time_scale != 1.0).then_some(shape.time_scale),
         path: inputs.path.as_ref().map(|_| path_recipe(ground, ground.orient())),
@@ -98,10 +138,18 @@ pub(super) fn recipe(ground: &Ground, options: &Options, scheme: Scheme, facts: 
             .zip(inputs.hashes())
             .map(|(name, blake3)| Input { name, blake3 })
             .collect(),
-        deviation_degrees: facts.tracks.iter().map(|track| track.deviation.map(rounded_up)).collect(),
+        deviation_degrees: tracks(|track| track.deviation),
+        nlerp_degrees: tracks(|track| track.nlerp),
+        measured_degrees: tracks(|track| track.measured).filter(|_| measured),
         deviation_units: facts.deviation_units,
+        displacement_units: facts.displacement_units,
     };
     serde_json::to_string(&recipe).expect("plain data becomes JSON")
+}
+
+fn fewest_recipe(fewest: Fewest) -> FewestRecipe {
+    let Fewest { tolerance, distance, max_step, on_curve } = fewest;
+    FewestRecipe { tolerance, tolerance_distance: distance, max_step, on_curve }
 }
 
 fn path_recipe<'a>(ground: &Ground, orient: Orient) -> PathRecipe<'a> {

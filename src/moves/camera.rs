@@ -3,7 +3,7 @@
 //! A glTF camera looks along its −Z with +Y up.
 
 use super::way::Way;
-use super::{Error, Ground, Move, Orient, Shape};
+use super::{Error, Ground, Move, Orient, Shape, Turn};
 use crate::clip::Through;
 use crate::curve::{Ends, Motion, Scheme};
 use crate::math::Quat;
@@ -181,8 +181,8 @@ impl Rails {
                 let ahead = self.way.attitude(orient, &self.shape, scheme);
                 ahead.expect("only Orient::None turns nothing")
             }
-            Sight::Root => self.look(move |t| ground.root_at(t)),
-            Sight::Point(point) => self.look(move |_| *point),
+            Sight::Root => self.look(&ground.camera_knots, move |t| ground.root_at(t)),
+            Sight::Point(point) => self.look(&self.way.knots, move |_| *point),
             Sight::Turned { times, keys, through: Through::Keys } => {
                 Move::Keys(Motion::new(times, keys, scheme, Ends::Natural))
             }
@@ -193,15 +193,17 @@ impl Rails {
         [turn, Move::Travel(Box::new(&self.way))]
     }
 
-    fn look<'a>(&'a self, target: impl Fn(f64) -> DVec3 + Sync + 'a) -> Move<'a> {
+    /// Looks at a target; nothing jumps but at `knots`.
+    fn look<'a>(&'a self, knots: &'a [f64], target: impl Fn(f64) -> DVec3 + Sync + 'a) -> Move<'a> {
         let end = self.way.end();
-        Move::Attitude(Box::new(move |t| {
+        let at = Box::new(move |t| {
             // Where eye and target meet, the view of just before counts, else of just after.
             let steps = || (0..STEPS).map(|i| if i == 0 { 0.0 } else { end * f64::powi(0.5, STEPS - i) });
             let moments = steps().map(|step| t - step).chain(steps().map(|step| t + step));
             let view = |t: f64| look_at(self.way.place(t), target(t));
             moments.filter(|&t| t >= 0.0).find_map(view).unwrap_or(backwards())
-        }))
+        });
+        Move::Attitude(Turn { at, knots, ramps: &[] })
     }
 }
 

@@ -13,7 +13,7 @@ pub use camera::{Camera, Stand, View};
 pub use copies::{Copies, Moment, Stream, TooMany};
 pub use keys::{camera_keys, rotation_keys};
 
-use crate::clip::Through;
+use crate::clip::{Body, Clip, Through};
 use crate::curve::{Arc, Ends, Motion, NotClosed, Scheme};
 use crate::math::Quat;
 use crate::orient::{Axis, Frame, Level, ParallelAxes, model_frame};
@@ -165,9 +165,19 @@ pub enum Move<'a> {
     /// It turns through keys.
     Keys(Motion<'a>),
     /// It turns with the path.
-    Attitude(Box<dyn Fn(f64) -> Quat + Sync + 'a>),
+    Attitude(Turn<'a>),
     /// It goes along the path.
     Travel(Box<dyn Travel + 'a>),
+}
+
+/// A turn of which nothing is known but its values.
+pub struct Turn<'a> {
+    /// The rotation at a time, seconds.
+    pub at: Box<dyn Fn(f64) -> Quat + Sync + 'a>,
+    /// Times between which it is smooth.
+    pub knots: &'a [f64],
+    /// The stretches before jumps, in which a file turns to what comes after.
+    pub ramps: &'a [(f64, f64)],
 }
 
 impl Move<'_> {
@@ -183,7 +193,7 @@ impl Move<'_> {
     pub(crate) fn turned(&self, t: f64) -> Quat {
         match self {
             Move::Keys(motion) => motion.at(t),
-            Move::Attitude(at) => at(t),
+            Move::Attitude(turn) => (turn.at)(t),
             Move::Travel(_) => Quat::IDENTITY,
         }
     }
@@ -202,7 +212,7 @@ impl Move<'_> {
     pub fn rotation(&self) -> Option<Rotation<'_>> {
         match self {
             Move::Keys(motion) => Some(Rotation::Motion(*motion)),
-            Move::Attitude(at) => Some(Rotation::Function(at)),
+            Move::Attitude(turn) => Some(Rotation::Function(&turn.at)),
             Move::Travel(_) => None,
         }
     }
@@ -458,6 +468,30 @@ impl<'a> Ground<'a> {
         extent(self.way.iter().flat_map(|way| way.path.key_points()))
     }
 
+    /// The length of the chain of boxes, if the object is one.
+    pub fn chain_length(&self) -> Option<f64> {
+        let clip = self.inputs.keyframes.as_ref().map(|keyframes| &keyframes.clip)?;
+        match clip.body {
+            Body::Chain { length } => Some(length * clip.tracks.len() as f64),
+            Body::Free => None,
+        }
+    }
+
+    /// How far the farthest corner of what a node turns can be from where it is hinged.
+    pub fn reach_below(&self, mover: Mover) -> f64 {
+        let (boxes, length) = match self.inputs.keyframes.as_ref().map(|keyframes| &keyframes.clip) {
+            Some(Clip { body: Body::Chain { length }, tracks, .. }) => (tracks.len(), *length),
+            Some(_) => return FREE_BODY,
+            None => return 0.0,
+        };
+        let below = match mover {
+            Mover::Root => boxes,
+            Mover::Track(track) => boxes - track,
+        };
+        // All boxes in a line, and the corner of the last one's square end.
+        (below - 1) as f64 * length + length.hypot(std::f64::consts::FRAC_1_SQRT_2)
+    }
+
     /// The same of all points by which paths are shaped, cameras' too, and the origin.
     pub fn reach(&self) -> f64 {
         let rails = self.posts.iter().filter_map(|post| match post {
@@ -479,6 +513,9 @@ impl<'a> Ground<'a> {
         self.shape.orient.unwrap_or(by_default)
     }
 }
+
+/// How far the free body reaches from its middle.
+const FREE_BODY: f64 = 1.5;
 
 /// An upper bound of a motion's speed, radians a second.
 fn turning_bound(motion: &Motion) -> f64 {

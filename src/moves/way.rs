@@ -1,6 +1,6 @@
 //! The path on the common clock, and how the root turns on its way.
 
-use super::{Error, Move, Orient, Shape, merged};
+use super::{Error, Move, Orient, Shape, Turn, merged};
 use crate::curve::{Ends, Motion, Scheme};
 use crate::math::Quat;
 use crate::orient::{self, Attitude, Frame, Level, Levelled, Tangent, Upright};
@@ -21,6 +21,10 @@ pub(super) struct Way {
     model: Quat,
     /// The path's knots on the common clock.
     pub(super) knots: Vec<f64>,
+    /// When its velocity jumps, its start and end included.
+    jumps: Vec<f64>,
+    /// The stretches before corners in which a file turns.
+    ramps: Vec<(f64, f64)>,
 }
 
 /// How long before a corner the turn begins that a file shows for its jump, seconds.
@@ -64,8 +68,12 @@ impl Way {
         let ramps = path.corners().iter().map(|t| t - RAMP).filter(|&t| t > 0.0);
         let times = path.key_times().iter().chain(path.jumps()).chain(path.corners()).copied().chain(ramps);
         let knots = merged(times.map(|t| start + t));
+        let end = path.duration();
+        let jumps = path.jumps().iter().copied().chain([0.0, end]).map(|t| start + t).filter(|&t| t > 0.0);
+        let ramp = |&t: &f64| (start + (t - RAMP).max(0.0), start + t);
+        let (jumps, ramps) = (merged(jumps), path.corners().iter().map(ramp).collect());
         let any_given = given.iter().any(Option::is_some);
-        Ok(Way { path, start, keyed, any_given, model, knots })
+        Ok(Way { path, start, keyed, any_given, model, knots, jumps, ramps })
     }
 
     pub(super) fn end(&self) -> f64 {
@@ -111,7 +119,8 @@ impl Way {
 
     fn facing<'a>(&'a self, attitude: impl Attitude + 'a, level: Level) -> Move<'a> {
         let turn = |at: Box<dyn Attitude + 'a>| -> Move<'a> {
-            Move::Attitude(Box::new(move |t| at.at(self.past_corner(t)) * self.model))
+            let at = Box::new(move |t| at.at(self.past_corner(t)) * self.model);
+            Move::Attitude(Turn { at, knots: &self.knots, ramps: &self.ramps })
         };
         if level == Level::default() {
             turn(Box::new(attitude))
@@ -139,6 +148,10 @@ impl Travel for &Way {
 
     fn knots(&self) -> &[f64] {
         &self.knots
+    }
+
+    fn jumps(&self) -> &[f64] {
+        &self.jumps
     }
 }
 

@@ -334,7 +334,7 @@ mod tests {
             let timeline = Timeline::new(motion.times(), motion.ramp(), fps_parsed, key_times).unwrap();
             let times: Vec<f32> = (0..timeline.chunks()).flat_map(|i| timeline.chunk(i).1).collect();
             let mut samples = Vec::new();
-            let facts = rotations(&[Rotation::Motion(motion)], &timeline, |chunk| {
+            let facts = rotations(&[Rotation::Motion(motion)], &timeline, Default::default(), |chunk| {
                 samples.extend_from_slice(chunk);
                 Ok::<(), ()>(())
             });
@@ -358,7 +358,9 @@ mod tests {
         let keys = vec![Quat::exp(Vec3::new(0.1, 0.2, 0.3)); 5];
         let motion = Motion::new(&[0.0, 1.0, 2.0, 3.0, 4.0], &keys, Scheme::Bessel, Ends::Natural);
         let timeline = Timeline::new(motion.times(), None, "60".parse().unwrap(), true).unwrap();
-        let facts = rotations(&[Rotation::Motion(motion)], &timeline, |_| Ok::<(), ()>(())).unwrap();
+        let facts =
+            rotations(&[Rotation::Motion(motion)], &timeline, Default::default(), |_| Ok::<(), ()>(()))
+                .unwrap();
         // Four components, each within 2⁻²⁵ of its value.
         let deviation = facts[0].deviation.unwrap();
         assert!(deviation < 1e-5, "{deviation}");

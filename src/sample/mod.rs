@@ -6,13 +6,15 @@
 
 pub(crate) mod blend;
 pub(crate) mod deviation;
+mod encoding;
 mod fps;
 mod rotations;
 mod timeline;
 mod translations;
 pub(crate) mod worst;
 
+pub use encoding::{Encoding, code};
 pub use fps::{Fps, NotARate};
-pub use rotations::{Rotation, Steps, TrackFacts, rotations};
+pub use rotations::{Rotation, Steps, TrackFacts, Writing, rotations};
 pub use timeline::{Timeline, TooFine};
 pub use translations::{Travel, translations};

@@ -1,7 +1,7 @@
 //! Every track at every sample time, in order and in parallel.
 
-use super::Timeline;
 use super::deviation::{self, Stretch, written};
+use super::{Encoding, Timeline};
 use crate::curve::{Arc, Motion, Piece};
 use crate::math::Quat;
 use rayon::prelude::*;
@@ -45,8 +45,26 @@ pub struct TrackFacts {
     pub deviation: Option<f64>,
     /// The same for players that blend the four numbers and normalise, degrees.
     pub nlerp: Option<f64>,
+    /// For a function that nothing is known of: the largest angle that was found, at
+    /// samples and between them. What lies between those places may be a little more.
+    pub measured: Option<f64>,
     /// Steps from sample to sample; the ramp of a jump does not count.
     pub steps: Steps,
+}
+
+/// How rotations become numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Writing {
+    /// What numbers.
+    pub encoding: Encoding,
+    /// Whether to find out how far playback of them is from the motion.
+    pub bound: bool,
+}
+
+impl Default for Writing {
+    fn default() -> Writing {
+        Writing { encoding: Encoding::Float, bound: true }
+    }
 }
 
 /// Some samples of one track.
@@ -65,11 +83,12 @@ struct Chunk {
 pub fn rotations<E>(
     tracks: &[Rotation],
     timeline: &Timeline,
+    writing: Writing,
     mut sink: impl FnMut(&[[f32; 4]]) -> Result<(), E>,
 ) -> Result<Vec<TrackFacts>, E> {
     let mut facts = vec![TrackFacts::default(); tracks.len()];
     let mut turned = false;
-    let job = |track: usize, chunk| sample(&tracks[track], timeline, chunk);
+    let job = |track: usize, chunk| sample(&tracks[track], timeline, writing, chunk);
     in_order(tracks.len(), timeline.chunks(), job, |track, chunk, mut samples: Chunk| {
         turned &= chunk > 0;
         if turned {
@@ -85,6 +104,7 @@ pub fn rotations<E>(
         };
         known.deviation = worst(known.deviation, samples.facts.deviation);
         known.nlerp = worst(known.nlerp, samples.facts.nlerp);
+        known.measured = worst(known.measured, samples.facts.measured);
         known.steps = known.steps.and(samples.facts.steps);
         sink(&samples.rotations)
     })?;
@@ -110,32 +130,53 @@ pub(super) fn in_order<T: Send, E>(
     Ok(())
 }
 
-fn sample(rotation: &Rotation, timeline: &Timeline, chunk: usize) -> Chunk {
+fn sample(rotation: &Rotation, timeline: &Timeline, writing: Writing, chunk: usize) -> Chunk {
     let (before, times) = timeline.chunk(chunk);
     let times: Vec<f32> = before.into_iter().chain(times).collect();
     let exact = match rotation {
         Rotation::Motion(motion) => evaluate(motion, &times),
         Rotation::Function(at) => times.iter().map(|&t| at(f64::from(t))).collect(),
     };
-    let mut rotations: Vec<[f32; 4]> = exact.iter().map(|q| q.to_xyzw().map(|x| x as f32)).collect();
+    let mut rotations: Vec<[f32; 4]> = exact.iter().map(|&q| writing.encoding.numbers(q)).collect();
     let turned = align(&mut rotations);
-    let facts = match rotation {
-        Rotation::Motion(motion) => {
-            let ramp = motion.ramp().map(|start| (start, motion.times()[1]));
+    let ramp = match rotation {
+        Rotation::Motion(motion) => motion.ramp().map(|start| (start, motion.times()[1])),
+        Rotation::Function(_) => None,
+    };
+    let mut facts = TrackFacts { steps: steps(ramp, &times, &rotations), ..TrackFacts::default() };
+    match rotation {
+        Rotation::Motion(motion) if writing.bound => {
             let stretch = Stretch { motion, times: &times, exact: &exact, written: &rotations };
             let bounds = deviation::upper_bounds(&stretch);
-            TrackFacts {
-                deviation: Some(bounds.slerp.to_degrees()),
-                nlerp: Some(bounds.nlerp.to_degrees()),
-                steps: steps(ramp, &times, &rotations),
-            }
+            facts.deviation = Some(bounds.slerp.to_degrees());
+            facts.nlerp = Some(bounds.nlerp.to_degrees());
         }
-        Rotation::Function(_) => {
-            TrackFacts { steps: steps(None, &times, &rotations), ..TrackFacts::default() }
-        }
-    };
+        Rotation::Function(at) if writing.bound => facts.measured = Some(measured(at, &times, &rotations)),
+        Rotation::Motion(_) | Rotation::Function(_) => {}
+    }
     rotations.drain(..usize::from(before.is_some()));
     Chunk { rotations, turned, facts }
+}
+
+/// Where between two samples a function is looked at, as parts of the interval: nearest to
+/// the middle, where a parabola peaks, and beside it.
+const BETWEEN: [f64; 3] = [0.25, 0.5, 0.75];
+
+/// The largest angle, degrees, between a function and the playback of its samples that
+/// shows at samples and between them.
+fn measured(at: &dyn Fn(f64) -> Quat, times: &[f32], rotations: &[[f32; 4]]) -> f64 {
+    let off = |t: f64, played: Quat| played.angle_to(at(t)).to_degrees();
+    let mut worst: f64 = 0.0;
+    for (t, q) in times.windows(2).zip(rotations.windows(2)) {
+        let (start, h) = (f64::from(t[0]), f64::from(t[1]) - f64::from(t[0]));
+        let (a, b) = (written(q[0]), written(q[1]));
+        let step = (a.conjugate() * b.aligned_to(a)).log();
+        for u in BETWEEN {
+            worst = worst.max(off(start + u * h, a * Quat::exp(step * u)));
+        }
+        worst = worst.max(off(start + h, b));
+    }
+    worst
 }
 
 /// The motion at increasing times.
@@ -204,7 +245,7 @@ mod tests {
             samples.extend_from_slice(chunk);
             Ok::<(), ()>(())
         };
-        rotations(&[Rotation::Motion(motion)], &timeline, sink).unwrap();
+        rotations(&[Rotation::Motion(motion)], &timeline, Writing::default(), sink).unwrap();
         let dots = samples.windows(2).map(|q| (0..4).map(|i| q[0][i] * q[1][i]).sum::<f32>());
         assert!(dots.fold(1.0, f32::min) > 0.0);
     }

@@ -18,6 +18,11 @@ pub trait Travel: Sync {
 
     /// Times at which derivatives may jump, increasing.
     fn knots(&self) -> &[f64];
+
+    /// Times at which the velocity jumps, increasing.
+    fn jumps(&self) -> &[f64] {
+        self.knots()
+    }
 }
 
 /// Evaluates a path at every time of the timeline and hands the places, x y z as float32,

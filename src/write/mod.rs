@@ -14,7 +14,7 @@ mod scene;
 mod trace;
 
 pub use container::{Bin, Buffer, Glb, LARGEST_GLB, glb_size};
-pub use document::{Animation, Channel, Data, Interpolation, Property, document};
+pub use document::{Animation, Channel, Component, Data, Interpolation, Property, document};
 pub use line::Line;
 pub use mesh::{Material, Mesh, Part};
 pub use scene::{Lens, Node, Object, Scene, Shape};

@@ -3,7 +3,7 @@
 use dat2glb::asset::{Asset, NoFiles};
 use dat2glb::check::motion::{self, Given};
 use dat2glb::check::{self, Code, Severity};
-use dat2glb::convert::{Options, Plan};
+use dat2glb::convert::{Options, Plan, Sampling};
 use dat2glb::curve::{Ends, Scheme};
 use dat2glb::moves::{Ground, Inputs, Shape};
 use dat2glb::read;
@@ -72,8 +72,8 @@ proptest! {
             name: "random".into(),
             inputs: vec!["random.dat".into()],
             schemes: vec![scheme],
-            fps: fps.parse().unwrap(),
-            key_times,
+            sampling: Sampling::Rate { fps: fps.parse().unwrap(), key_times },
+            writing: Default::default(),
         };
         let boxes = keyframes.clip.tracks.len();
         let inputs = Inputs { keyframes: Some(keyframes), path: None, cameras: Vec::new() };

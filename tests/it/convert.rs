@@ -21,6 +21,13 @@ fn a_clip_says_how_it_was_made() {
         let mut extras = clip.extras.clone();
         let deviation: Vec<f64> = serde_json::from_value(extras["deviationDegrees"].take()).unwrap();
         assert!(deviation.len() == 1 && deviation[0] > 0.0 && deviation[0] < 1.0, "{deviation:?}");
+        let nlerp: Vec<f64> = serde_json::from_value(extras["nlerpDegrees"].take()).unwrap();
+        assert!(nlerp.len() == 1 && nlerp[0] >= deviation[0], "{nlerp:?}");
+        // One box, 1 unit long and square: its far corners are √1.5 from the hinge.
+        let displacement = extras["displacementUnits"].take().as_f64().unwrap();
+        let expected = deviation[0].to_radians() * 1.5f64.sqrt();
+        // Each of the figures is rounded up to five digits.
+        assert!((displacement / expected - 1.0).abs() < 2e-4, "{displacement} {expected}");
         let expected = json!({
             "dat2glb": env!("CARGO_PKG_VERSION"),
             "scheme": scheme,
@@ -29,6 +36,8 @@ fn a_clip_says_how_it_was_made() {
             "keyTimes": true,
             "inputs": [{ "name": "xyzw.dat", "blake3": hash }],
             "deviationDegrees": null,
+            "nlerpDegrees": null,
+            "displacementUnits": null,
         });
         assert_eq!(extras, expected);
     }

@@ -16,6 +16,8 @@ mod convert_outputs;
 #[cfg(feature = "cli")]
 mod example;
 #[cfg(feature = "cli")]
+mod fewest;
+#[cfg(feature = "cli")]
 mod help;
 #[cfg(feature = "cli")]
 mod inspect;

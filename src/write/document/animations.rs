@@ -27,12 +27,23 @@ pub struct Channel {
     pub property: Property,
     /// What happens between samples.
     pub interpolation: Interpolation,
+    /// What numbers the values are.
+    pub component: Component,
     /// Times of the samples; channels with equal times share them.
     pub times: Data,
     /// The first and the last time.
     pub span: [f32; 2],
     /// The values; channels with equal values share them.
     pub values: Data,
+}
+
+/// What numbers values are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Component {
+    /// float32.
+    F32,
+    /// Whole numbers of 16 bits, 32767 being 1.
+    I16,
 }
 
 /// What happens between samples.
@@ -93,8 +104,15 @@ impl Builder {
                     let range = channel.span.map(|t| json::Value::from(vec![exact(t)]));
                     self.accessor(view, self.within(times), Type::Scalar, ComponentType::F32, Some(range))
                 });
-                let output = *shared_values.entry((values, property.numbers())).or_insert_with(|| {
-                    self.accessor(view, self.within(values), property.kind(), ComponentType::F32, None)
+                let key = (values, property.numbers(), channel.component);
+                let output = *shared_values.entry(key).or_insert_with(|| {
+                    let component = match channel.component {
+                        Component::F32 => ComponentType::F32,
+                        Component::I16 => ComponentType::I16,
+                    };
+                    let made = self.accessor(view, self.within(values), property.kind(), component, None);
+                    self.root.accessors[made.value()].normalized = channel.component == Component::I16;
+                    made
                 });
                 channels.push(target(channel, samplers.len()));
                 samplers.push(json::animation::Sampler {

@@ -5,7 +5,7 @@ mod shown;
 
 pub(super) use shown::linear;
 
-pub use animations::{Animation, Channel, Interpolation, Property};
+pub use animations::{Animation, Channel, Component, Interpolation, Property};
 
 use super::scene::Scene;
 use gltf_json::accessor::{ComponentType, GenericComponentType, Type};
@@ -121,6 +121,7 @@ mod tests {
             node,
             property: Property::Rotation,
             interpolation: Interpolation::Linear,
+            component: Component::F32,
             times: data,
             span: [0.0, 1.5],
             values: data,

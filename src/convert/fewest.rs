@@ -1,0 +1,226 @@
+//! Each move by as few keys as a tolerance allows.
+
+use super::Error;
+use super::facts::Seen;
+use crate::moves::{Ground, Move, Mover, Turn};
+use crate::reduce::{self, Attitude, Facts, Travelling, Turning};
+use crate::sample::{Encoding, Steps, TrackFacts, code};
+use rayon::prelude::*;
+
+/// What is asked for instead of a rate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fewest {
+    /// How far playback may turn from the curve, degrees.
+    pub tolerance: f64,
+    /// How far it may be from the path, and a corner of a chain from where it should be,
+    /// units; without it what the tolerance makes at the path's extent.
+    pub distance: Option<f64>,
+    /// How far a node may turn from key to key, degrees.
+    pub max_step: f64,
+    /// Keys lie on the curve.
+    pub on_curve: bool,
+}
+
+impl Fewest {
+    /// The step that keeps component-blending viewers within 0.01°.
+    pub const MAX_STEP: f64 = Steps::LARGE;
+}
+
+/// The keys of one move.
+#[derive(Clone, Debug)]
+pub(super) struct Chosen {
+    pub(super) times: Vec<f32>,
+    pub(super) values: Values,
+    pub(super) facts: Facts,
+}
+
+#[derive(Clone, Debug)]
+pub(super) enum Values {
+    Rotations(Vec<[f32; 4]>),
+    Places(Vec<[f32; 3]>),
+}
+
+impl Chosen {
+    /// What is known of a rotation, as samplers say it.
+    pub(super) fn track(&self) -> TrackFacts {
+        let Facts { deviation, nlerp, proven, largest_step, .. } = self.facts;
+        TrackFacts {
+            deviation: proven.then_some(deviation),
+            nlerp: proven.then_some(nlerp),
+            measured: (!proven).then_some(deviation),
+            steps: Steps { large: 0, worst: largest_step, at: 0.0 },
+        }
+    }
+
+    /// Holds the last value until `end`.
+    pub(super) fn hold_until(&mut self, end: f32) {
+        fn repeat_last<T: Copy>(values: &mut Vec<T>) {
+            values.extend(values.last().copied());
+        }
+        self.times.push(end);
+        match &mut self.values {
+            Values::Rotations(rotations) => repeat_last(rotations),
+            Values::Places(places) => repeat_last(places),
+        }
+    }
+
+    /// A key at 0 for what starts later: until then it waits.
+    fn wait(mut self) -> Chosen {
+        if self.times[0] > 0.0 {
+            self.times.insert(0, 0.0);
+            match &mut self.values {
+                Values::Rotations(rotations) => rotations.insert(0, rotations[0]),
+                Values::Places(places) => places.insert(0, places[0]),
+            }
+        }
+        self
+    }
+}
+
+/// The keys of an object's moves. The first of them keeps the clip's last time where no
+/// other does.
+pub(super) fn object(
+    ground: &Ground,
+    moves: &[(Mover, Move)],
+    fewest: &Fewest,
+    encoding: Encoding,
+) -> Result<Vec<Chosen>, Error> {
+    let allowed = moves
+        .iter()
+        .map(|&(mover, ref a_move)| (a_move, allowed(ground, mover, a_move, moves.len(), fewest)));
+    let mut keys = all(allowed.collect(), ground.duration(), fewest, encoding)?;
+    let end = ground.duration() as f32;
+    let last = keys.iter().filter_map(|chosen| chosen.times.last().copied()).fold(0.0, f32::max);
+    if let Some(first) = keys.first_mut().filter(|_| last < end) {
+        first.hold_until(end);
+    }
+    Ok(keys)
+}
+
+/// The keys of what moves cameras.
+pub(super) fn cameras(
+    ground: &Ground,
+    moves: &[(usize, Move)],
+    fewest: &Fewest,
+    encoding: Encoding,
+) -> Result<Vec<Chosen>, Error> {
+    let allowed = |a_move: &Move| match a_move {
+        Move::Travel(_) => distance(ground, fewest),
+        Move::Keys(_) | Move::Attitude(_) => fewest.tolerance,
+    };
+    let moves = moves.iter().map(|(_, a_move)| (a_move, allowed(a_move))).collect();
+    all(moves, ground.duration(), fewest, encoding)
+}
+
+fn all(
+    moves: Vec<(&Move, f64)>,
+    end: f64,
+    fewest: &Fewest,
+    encoding: Encoding,
+) -> Result<Vec<Chosen>, Error> {
+    moves.into_par_iter().map(|(a_move, allowed)| chosen(a_move, end, allowed, fewest, encoding)).collect()
+}
+
+/// What is known of moves that have keys of their own.
+pub(super) fn seen(all: &[Chosen]) -> Seen {
+    let mut seen = Seen::default();
+    for chosen in all {
+        match chosen.values {
+            Values::Rotations(_) => {
+                seen.tracks.push(chosen.track());
+                let moved = chosen.facts.keys_moved;
+                seen.keys_moved = Some(seen.keys_moved.map_or(moved, |worst| worst.max(moved)));
+            }
+            Values::Places(_) => seen.distances.push(chosen.facts.deviation),
+        }
+    }
+    seen
+}
+
+/// How far places may be off.
+fn distance(ground: &Ground, fewest: &Fewest) -> f64 {
+    fewest.distance.unwrap_or(fewest.tolerance.to_radians() * ground.reach())
+}
+
+/// How far a move of an object may be off, degrees or units. Where a distance is asked
+/// for, all `moves` share it: each may displace what it moves by an equal part.
+fn allowed(ground: &Ground, mover: Mover, a_move: &Move, moves: usize, fewest: &Fewest) -> f64 {
+    let share = fewest.distance.map(|distance| distance / moves as f64);
+    match (a_move, share) {
+        (Move::Travel(_), None) => distance(ground, fewest),
+        (Move::Travel(_), Some(share)) => share,
+        (_, None) => fewest.tolerance,
+        (_, Some(share)) => {
+            let reach = ground.reach_below(mover);
+            let turn = if reach > 0.0 { (share / reach).to_degrees() } else { f64::INFINITY };
+            fewest.tolerance.min(turn)
+        }
+    }
+}
+
+/// The fewest keys of a move from 0 to `end`. `allowed`: how far it may be off, degrees or
+/// units.
+fn chosen(
+    a_move: &Move,
+    end: f64,
+    allowed: f64,
+    fewest: &Fewest,
+    encoding: Encoding,
+) -> Result<Chosen, Error> {
+    let coded = encoding == Encoding::Normalized16;
+    let reserve = if coded { reserve(encoding, fewest.max_step) } else { 0.0 };
+    let options = reduce::Options {
+        tolerance: allowed,
+        reserve: if matches!(a_move, Move::Travel(_)) { 0.0 } else { reserve },
+        max_step: (!matches!(a_move, Move::Travel(_))).then_some(fewest.max_step),
+        on_curve: fewest.on_curve,
+    };
+    let rotations = |keys: reduce::Keys<4>| {
+        let keys = if coded { recoded(keys, encoding, reserve) } else { keys };
+        Chosen { times: keys.times, values: Values::Rotations(keys.values), facts: keys.facts }
+    };
+    let chosen = match a_move {
+        Move::Keys(motion) => reduce::rotation(&Turning::new(*motion), &options).map(rotations),
+        Move::Attitude(Turn { at, knots, ramps }) => {
+            reduce::rotation(&Attitude::new(at, (0.0, end), knots, ramps), &options).map(rotations)
+        }
+        Move::Travel(travel) => {
+            let curve = Travelling::new(travel.as_ref(), (0.0, end), travel.jumps());
+            reduce::numbers(&curve, &options).map(|keys| Chosen {
+                times: keys.times,
+                values: Values::Places(keys.values),
+                facts: keys.facts,
+            })
+        }
+    };
+    chosen.map(Chosen::wait).map_err(|error| Error::Fewest { error, reserve: options.reserve })
+}
+
+/// What coding adds to a playback's error: between two keys, each off by at most the
+/// largest error e, the arc between them is off by at most e / cos(step / 4), the step
+/// being the angle of the rotation from key to key (the norm of a Jacobi field of the unit
+/// sphere at the middle of the arc, where it is largest).
+fn reserve(encoding: Encoding, step: f64) -> f64 {
+    encoding.largest_error() / (step.to_radians() / 4.0).cos()
+}
+
+/// Keys as a file with fewer digits holds them.
+fn recoded(mut keys: reduce::Keys<4>, encoding: Encoding, reserve: f64) -> reduce::Keys<4> {
+    for value in &mut keys.values {
+        *value = encoding.numbers(crate::math::Quat::from_xyzw(value.map(f64::from)));
+    }
+    keys.facts.deviation += reserve;
+    keys.facts.nlerp += reserve;
+    keys.facts.keys_moved += reserve;
+    keys
+}
+
+/// The bytes of rotations by an encoding.
+pub(super) fn bytes(rotations: &[[f32; 4]], encoding: Encoding) -> Vec<u8> {
+    match encoding {
+        Encoding::Float => super::layout::little_endian(rotations),
+        Encoding::Normalized16 => {
+            rotations.as_flattened().iter().flat_map(|&number| code(number).to_le_bytes()).collect()
+        }
+    }
+}

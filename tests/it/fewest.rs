@@ -1,0 +1,177 @@
+//! As few keys as a tolerance allows, through the real program.
+
+use crate::support::tool::run;
+use crate::support::{fixtures, keyframes};
+use dat2glb::asset::play::Player;
+use dat2glb::asset::{Asset, NoFiles};
+use dat2glb::curve::{Ends, Motion, Scheme};
+use dat2glb::math::Quat;
+use serde_json::Value;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+fn output() -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("out.glb");
+    (folder, output)
+}
+
+fn convert(input: &Path, output: &Path, flags: &[&str]) -> Value {
+    run(["convert", text(input), "-o", text(output), "--json"].iter().chain(flags)).exits(0).json()
+}
+
+fn open(path: &Path) -> Asset {
+    Asset::open(Box::new(File::open(path).unwrap()), Box::new(NoFiles)).unwrap()
+}
+
+/// The largest angle between the file as a player turns it and the motion, degrees: found
+/// at many times, and not by the program's own search.
+fn measured(output: &Path, input: &Path, scheme: Scheme) -> f64 {
+    let clip = crate::support::read_clip(input);
+    let mut asset = open(output);
+    let channels = asset.clips().remove(0).channels;
+    let mut worst: f64 = 0.0;
+    for (channel, keys) in channels.iter().zip(&clip.tracks) {
+        let motion = Motion::new(&clip.times, keys, scheme, Ends::Natural);
+        let mut player = Player::new();
+        for i in 0..=20_000 {
+            let t = clip.duration() * f64::from(i) / 20_000.0;
+            let played = player.value(&mut asset, channel, t).unwrap();
+            let played = Quat::from_xyzw(played.try_into().unwrap());
+            let played = Quat::from_xyzw(played.to_xyzw().map(|x| x / played.norm()));
+            worst = worst.max(played.angle_to(motion.at(t)).to_degrees());
+        }
+    }
+    worst
+}
+
+#[test]
+fn the_file_keeps_its_tolerance_with_fewer_keys_the_larger_it_is() {
+    let (_folder, output) = output();
+    for (name, scheme) in
+        [("chain-uneven", Scheme::Bessel), ("chain-even", Scheme::Squad), ("single-even", Scheme::CatmullRom)]
+    {
+        let input = keyframes(name);
+        let mut before = u64::MAX;
+        for tolerance in ["0.001", "0.01", "0.1"] {
+            let flags = ["--scheme", scheme.name(), "--tolerance", tolerance];
+            let summary = convert(&input, &output, &flags);
+            let limit: f64 = tolerance.parse().unwrap();
+            let stated = summary["clips"][0]["deviationDegrees"].as_f64().unwrap();
+            let worst = measured(&output, &input, scheme);
+            assert!(worst <= stated && stated <= limit * (1.0 + 1e-4), "{name}: {worst} {stated} {limit}");
+            assert!(stated <= 1.05 * worst + 1e-6, "{name}: {worst} {stated}");
+            let keys = summary["samples"].as_u64().unwrap();
+            assert!(keys <= before, "{name}: {keys} keys for {tolerance}, {before} for less");
+            before = keys;
+            let against = ["--against", text(&input), "--max-error", tolerance];
+            run(["check", text(&output)].iter().chain(&against)).exits(0);
+        }
+    }
+}
+
+#[test]
+fn keys_off_the_curve_are_fewer() {
+    let (_folder, output) = output();
+    let input = keyframes("chain-uneven");
+    let keys = |flags: &[&str]| convert(&input, &output, flags)["samples"].as_u64().unwrap() as f64;
+    let on = keys(&["--tolerance", "0.001", "--on-curve"]);
+    let off = keys(&["--tolerance", "0.001"]);
+    assert!(off < 0.75 * on, "{off} {on}");
+}
+
+#[test]
+fn paths_cameras_and_what_has_no_bound_keep_theirs_too() {
+    let (_folder, output) = output();
+    let flight = fixtures().join("paths/flight.dat");
+    let camera = format!("{},look-at=root", text(&fixtures().join("paths/camera.dat")));
+    let flags = ["--tolerance", "0.05", "--tolerance-distance", "0.02", "--camera", &camera];
+    let summary = convert(&flight, &output, &flags);
+    let clip = &summary["clips"][0];
+    assert!(clip["deviationUnits"].as_f64().unwrap() <= 0.02 * (1.0 + 1e-4), "{clip}");
+    assert!(clip["measuredDegrees"].as_f64().unwrap() <= 0.05 * (1.0 + 1e-4), "{clip}");
+    assert!(summary["samples"].as_u64().unwrap() < 2401 / 2, "{clip}");
+    let limits = ["--against", text(&flight), "--max-error", "0.0525", "--max-distance", "0.02"];
+    run(["check", text(&output)].iter().chain(&limits)).exits(0);
+}
+
+#[test]
+fn what_rests_has_one_key_and_the_clip_keeps_its_length() {
+    let (folder, output) = output();
+    let input = folder.path().join("in.dat");
+    std::fs::write(&input, "# 2 1.0\n0 1 0 0 0 1 0 0 0\n7.5 1 0 0 0 1 0 0 0\n9 1 0 0 0 1 0 0 0\n").unwrap();
+    assert_eq!(convert(&input, &output, &["--tolerance", "0.1"])["samples"], 3);
+    let clip = open(&output).clips().remove(0);
+    assert_eq!(clip.duration, 9.0);
+    let keys: Vec<usize> = clip.channels.iter().map(|channel| channel.keys).collect();
+    assert_eq!(keys, [2, 1]);
+}
+
+#[test]
+fn a_constant_turn_has_as_few_keys_as_the_largest_step_allows() {
+    let (folder, output) = output();
+    let input = folder.path().join("in.dat");
+    // 90° in one segment of slerp: six steps of at most 18° are five.
+    std::fs::write(&input, "# 1 1.0\n0 1 0 0 0\n3 0.70710678118654752 0.70710678118654752 0 0\n").unwrap();
+    for (step, keys) in [("18", 6), ("30", 4), ("100", 2)] {
+        let summary = convert(&input, &output, &["--tolerance", "0.01", "--max-step", step]);
+        assert_eq!(summary["samples"], keys, "{step}");
+    }
+}
+
+#[test]
+fn a_distance_holds_for_every_corner_of_a_chain() {
+    let (_folder, output) = output();
+    let input = keyframes("chain-even");
+    let flags = ["--tolerance", "1", "--tolerance-distance", "0.01"];
+    let summary = convert(&input, &output, &flags);
+    let stated = summary["clips"][0]["displacementUnits"].as_f64().unwrap();
+    assert!(stated <= 0.01 * (1.0 + 1e-4), "{stated}");
+}
+
+#[test]
+fn sixteen_bits_stay_within_the_tolerance_or_are_refused() {
+    let (_folder, output) = output();
+    let input = keyframes("chain-uneven");
+    convert(&input, &output, &["--tolerance", "0.02", "--quantize"]);
+    let worst = measured(&output, &input, Scheme::Bessel);
+    assert!(worst <= 0.02, "{worst}");
+    let accessors = &open(&output).root().accessors.clone();
+    let coded = accessors.iter().filter(|accessor| accessor.normalized).count();
+    assert_eq!(coded, 4);
+    let arguments = ["convert", text(&input), "-o", text(&output), "--tolerance", "0.002", "--quantize"];
+    run(arguments).exits(1).says(&["--quantize", "too small"]);
+    // At a rate the error of coding is part of what is stated.
+    let summary = convert(&input, &output, &["--quantize"]);
+    let stated = summary["clips"][0]["deviationDegrees"].as_f64().unwrap();
+    assert!(measured(&output, &input, Scheme::Bessel) <= stated);
+    run(["check", text(&output), "--against", text(&input)]).exits(0);
+}
+
+#[test]
+fn what_makes_no_sense_is_refused() {
+    let input = keyframes("chain-even");
+    let refused = |flags: &[&str], code, words: &[&str]| {
+        run(["convert", text(&input), "-o", "/tmp/never.glb"].iter().chain(flags)).exits(code).says(words);
+    };
+    refused(&["--tolerance", "1e-5"], 1, &["too small", "float32"]);
+    refused(&["--tolerance", "0.1", "--fps", "30"], 2, &["--fps"]);
+    refused(&["--tolerance", "0.1", "--no-key-times"], 2, &["--no-key-times"]);
+    refused(&["--tolerance", "0"], 2, &["above 0"]);
+    refused(&["--on-curve"], 2, &["--tolerance"]);
+    refused(&["--tolerance", "0.1", "--max-step", "180"], 2, &["below 180"]);
+}
+
+#[test]
+fn without_a_bound_nothing_is_stated() {
+    let (_folder, output) = output();
+    let input = keyframes("chain-even");
+    let summary = convert(&input, &output, &["--no-bound"]);
+    assert!(summary["clips"][0]["deviationDegrees"].is_null());
+    let checked = run(["check", text(&output), "--against", text(&input)]).exits(0);
+    assert!(!checked.out().contains("allowed"), "{}", checked.out());
+}
