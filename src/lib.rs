@@ -7,7 +7,7 @@
 //! clock, [`sample`] evaluates them at the times a viewer will play,
 //! [`mod@write`] makes a glTF file of the samples, [`asset`] loads any glTF
 //! file back, [`check`] judges it and `render` draws it. [`convert`] is these
-//! stages in a row.
+//! stages in a row. [`diff`] compares two files.
 //!
 //! # Conventions
 //!
@@ -22,6 +22,7 @@ pub mod check;
 pub mod clip;
 pub mod convert;
 pub mod curve;
+pub mod diff;
 pub mod inspect;
 pub mod math;
 pub mod moves;
