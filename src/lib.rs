@@ -7,7 +7,8 @@
 //! clock, [`sample`] evaluates them at the times a viewer will play,
 //! [`mod@write`] makes a glTF file of the samples, [`asset`] loads any glTF
 //! file back, [`check`] judges it and `render` draws it. [`convert`] is these
-//! stages in a row. [`diff`] compares two files.
+//! stages in a row. [`diff`] compares two files, and [`report`] writes findings
+//! for other programs.
 //!
 //! # Conventions
 //!
@@ -31,6 +32,7 @@ pub mod path;
 pub mod read;
 #[cfg(feature = "render")]
 pub mod render;
+pub mod report;
 pub mod sample;
 pub mod table;
 pub mod write;

@@ -3,6 +3,7 @@
 mod args;
 mod check;
 mod convert;
+mod diff;
 mod example;
 mod exit;
 mod files;
@@ -47,6 +48,7 @@ pub(crate) fn run(arguments: Vec<OsString>) -> ExitCode {
     finish(match cli.command {
         Command::Convert(options) => convert::run(&options),
         Command::Check(options) => check::run(&options),
+        Command::Diff(options) => diff::run(&options),
         #[cfg(feature = "render")]
         Command::Thumbnail(options) => thumbnail::run(&options),
         Command::Inspect(options) => inspect::run(&options),
