@@ -14,24 +14,24 @@ use std::path::Path;
 
 pub(super) fn run(options: &Arguments) -> Result<Exit, Failure> {
     let compared = compare(options);
-    let (exit, outcome) = match &compared {
+    let (exit, file, outcome) = match &compared {
         Ok((_, diff)) => {
             let report = diff.report(&limits(options));
             if !options.quiet {
                 shown(print(diff, &report, options))?;
             }
-            (judged(&report, fails_from(options)), Ok(report))
+            (judged(&report, fails_from(options)), options.b.as_path(), Ok(report))
         }
-        Err(failure) => {
+        Err((file, failure)) => {
             failure.print();
             if options.report.format() == Format::Json {
-                super::summary::print_failure(&options.b, failure)?;
+                super::summary::print_failure(file, failure)?;
             }
-            (failure.exit, Err(failure.message.clone()))
+            (failure.exit, *file, Err(failure.message.clone()))
         }
     };
     if !options.quiet {
-        let subjects = vec![Subject { file: name(&options.b), outcome }];
+        let subjects = vec![Subject { file: name(file), outcome }];
         let run = Run { command: "diff", subjects, fails_from: fails_from(options), exit: exit as u8 };
         print_document(&run, options.report.format())?;
     }
@@ -60,25 +60,32 @@ fn limits(options: &Arguments) -> Limits {
 
 type Assets = (Asset, Asset);
 
-fn compare(options: &Arguments) -> Result<(Assets, Diff), Failure> {
-    let (mut a, mut b) = (files::asset(&options.a)?, files::asset(&options.b)?);
+/// Compares the files, or says which of them is to blame and for what.
+fn compare(options: &Arguments) -> Result<(Assets, Diff), (&Path, Failure)> {
+    fn open(path: &Path) -> Result<Asset, (&Path, Failure)> {
+        files::asset(path).map_err(|failure| (path, failure))
+    }
+    let (mut a, mut b) = (open(&options.a)?, open(&options.b)?);
     let diff = diff::files(&mut a, &mut b, &options.map).map_err(|error| failure(error, options))?;
     Ok(((a, b), diff))
 }
 
-/// What is wrong, and with which file.
-fn failure(error: diff::Error, options: &Arguments) -> Failure {
+fn failure(error: diff::Error, options: &Arguments) -> (&Path, Failure) {
     let file = |which: Which| match which {
-        Which::A => name(&options.a),
-        Which::B => name(&options.b),
+        Which::A => options.a.as_path(),
+        Which::B => options.b.as_path(),
     };
     match &error {
         diff::Error::Asset { which, error } => {
             let file = file(*which);
-            Failure::refused(format!("{file}: {error}\n`dat2glb check` says all that is wrong with it"))
+            let message = format!("{}: {error}\n`dat2glb check` says all that is wrong with it", name(file));
+            (file, Failure::refused(message))
         }
-        diff::Error::Name { which, .. } => Failure::usage(format!("--map: {}: {error}", file(*which))),
-        _ => Failure::refused(error.to_string()),
+        diff::Error::Name { which, .. } => {
+            let file = file(*which);
+            (file, Failure::usage(format!("--map: {}: {error}", name(file))))
+        }
+        _ => (options.b.as_path(), Failure::refused(error.to_string())),
     }
 }
 

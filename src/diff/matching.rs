@@ -171,7 +171,7 @@ mod tests {
     use serde_json::{Value, json};
 
     fn rig(nodes: Value) -> Rig {
-        Rig::of(&open(glb(&json!({"asset": {"version": "2.0"}, "nodes": nodes}), &[])).unwrap())
+        Rig::of(&open(glb(&json!({"asset": {"version": "2.0"}, "nodes": nodes}), &[])).unwrap()).unwrap()
     }
 
     fn matched(a: Value, b: Value, map: &[(&str, &str)]) -> Vec<(usize, usize, Option<By>)> {

@@ -206,10 +206,11 @@ impl File {
     fn new(asset: &mut Asset, which: Which) -> Result<File, Error> {
         let clips = asset.clips();
         let mut skipped = Vec::new();
+        let failed = |error| Error::Asset { which, error };
         for clip in &clips {
-            unplayed(asset, clip, &mut skipped).map_err(|error| Error::Asset { which, error })?;
+            unplayed(asset, clip, &mut skipped).map_err(failed)?;
         }
-        Ok(File { rig: Rig::of(asset), clips, skipped })
+        Ok(File { rig: Rig::of(asset).map_err(failed)?, clips, skipped })
     }
 
     fn names(&self) -> Vec<Option<String>> {

@@ -1,7 +1,7 @@
 //! A file's nodes as a tree, and how each stands while nothing moves it.
 
-use crate::asset::Asset;
 use crate::asset::play::Property;
+use crate::asset::{Asset, Error};
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use gltf::json::{Node, Root};
 
@@ -37,7 +37,7 @@ pub(super) struct Local {
 }
 
 impl Rig {
-    pub(super) fn of(asset: &Asset) -> Rig {
+    pub(super) fn of(asset: &Asset) -> Result<Rig, Error> {
         let root = asset.root();
         let mut parents = parents(root);
         let order = order(root, &mut parents);
@@ -59,7 +59,13 @@ impl Rig {
             joints[index].place = *count;
             *count += 1;
         }
-        Rig { joints, order }
+        match joints.iter().position(|joint| !joint.rest.is_finite()) {
+            None => Ok(Rig { joints, order }),
+            Some(node) => {
+                let problem = "expected finite numbers, and how it stands to its parent has others";
+                Err(Error::data(format!("/nodes/{node}"), problem))
+            }
+        }
     }
 
     /// The node's name, or its number where it has none.
@@ -147,6 +153,12 @@ impl Local {
             weights,
             matrix: None,
         }
+    }
+
+    fn is_finite(&self) -> bool {
+        let numbers = self.rotation.iter().chain(&self.weights);
+        let steps = self.translation.is_finite() && self.scale.is_finite();
+        steps && numbers.copied().all(f64::is_finite) && self.matrix.is_none_or(|matrix| matrix.is_finite())
     }
 
     /// Replaces one step.

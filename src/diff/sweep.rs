@@ -2,8 +2,9 @@
 //!
 //! Between neighbouring key times of all channels of both files, everything is smooth.
 //! Each such interval is looked at from its start (as it is from there on) to its end (as
-//! it is up to there: STEP jumps at keys) and at its quarters. Where beside the largest of
-//! the five there may be a peak that exceeds the largest so far, golden sections find it.
+//! it is up to there: STEP jumps at keys) and at its quarters. Where between these there
+//! may be a peak that exceeds the largest so far, golden sections find it; of some hundred
+//! intervals the most promising few are searched.
 
 use super::measure::{ByMeasure, Measure, all, one};
 use super::reel::{Reel, Span};
@@ -20,8 +21,10 @@ const IN_MEMORY: usize = 1 << 22;
 const IN_A_ROW: usize = 512;
 /// Where an interval is looked at, as parts of it.
 const LOOKS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
-/// Golden sections of half an interval: to 1e-7 of it.
-const SECTIONS: usize = 32;
+/// Golden sections of half an interval: to 1e-5 of it.
+const SECTIONS: usize = 24;
+/// Peaks that are searched for in a row, by pair and measure: the most promising ones.
+const PEAKS: usize = 4;
 
 /// How far apart, as a gauge, and when, seconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -164,12 +167,14 @@ pub(super) fn sweep(
     loop {
         let (times, last) = sweep.window(start);
         let windows: Vec<&[f64]> = overlapping(&times);
-        let rows: Vec<Vec<ByMeasure<Worst>>> = windows.par_iter().map(|row| sweep.row(row)).collect();
+        let row = |times: &&[f64]| sweep.row(times, &found);
+        let rows: Vec<Vec<ByMeasure<Worst>>> = windows.par_iter().map(row).collect();
         rows.iter().for_each(|row| sweep.merge(&mut found, row));
         start = times.last().copied().unwrap_or(start);
         if last {
             // From the last key on everything stays as it is.
-            sweep.merge(&mut found, &sweep.row(&[start, start]));
+            let end = sweep.row(&[start, start], &found);
+            sweep.merge(&mut found, &end);
             return Ok(found);
         }
         sweep.wind((&mut *a_asset, &mut *b_asset), start, count)?;
@@ -255,23 +260,28 @@ impl<'a> Sweep<'a> {
     }
 
     /// The largest differences of the moving pairs from the first of some neighbouring
-    /// times to the last.
-    fn row(&self, times: &[f64]) -> Vec<ByMeasure<Worst>> {
+    /// times to the last; no less than what was `found` before.
+    fn row(&self, times: &[f64], found: &[ByMeasure<Worst>]) -> Vec<ByMeasure<Worst>> {
         let mut row = Row {
             sweep: self,
             a: Pose::resting(self.a.rig),
             b: Pose::resting(self.b.rig),
             looks: vec![Default::default(); self.moving.len()],
-            worst: vec![Default::default(); self.moving.len()],
+            worst: self.moving.iter().map(|&pair| found[pair]).collect(),
+            promising: vec![Default::default(); self.moving.len()],
         };
         let mut known = false;
         for pair in times.windows(2) {
             let (start, end) = (pair[0], pair[1]);
-            let spans = (self.a.spans(start), self.b.spans(start));
-            row.interval(&spans, start, end, known);
+            row.interval(&self.spans(start), start, end, known);
             known = !(self.a.jumps(end) || self.b.jumps(end));
         }
+        row.refine();
         row.worst
+    }
+
+    fn spans(&self, time: f64) -> Spans<'_> {
+        (self.a.spans(time), self.b.spans(time))
     }
 }
 
@@ -286,6 +296,19 @@ struct Row<'a> {
     /// What was seen of each moving pair in the interval.
     looks: Vec<[ByMeasure<f64>; LOOKS.len()]>,
     worst: Vec<ByMeasure<Worst>>,
+    /// Where peaks may be.
+    promising: Vec<ByMeasure<Vec<Promise>>>,
+}
+
+/// A stretch of an interval in which there may be a peak.
+#[derive(Clone, Copy, Debug)]
+struct Promise {
+    /// What it may reach.
+    possible: f64,
+    /// When the interval begins.
+    start: f64,
+    from: f64,
+    to: f64,
 }
 
 impl Row<'_> {
@@ -307,7 +330,7 @@ impl Row<'_> {
         }
         for pair in 0..self.looks.len() {
             for measure in Measure::ALL {
-                self.note(spans, (start, end), pair, measure);
+                self.note((start, end), pair, measure);
             }
         }
     }
@@ -322,20 +345,38 @@ impl Row<'_> {
         }
     }
 
-    fn note(&mut self, spans: &Spans, (start, end): (f64, f64), pair: usize, measure: Measure) {
+    fn note(&mut self, (start, end): (f64, f64), pair: usize, measure: Measure) {
         let at = measure as usize;
         let seen = self.looks[pair].map(|look| look[at]);
         let worst = &mut self.worst[pair][at];
-        for (&off, &u) in seen.iter().zip(&LOOKS) {
+        let time = |look: usize| start + LOOKS[look] * (end - start);
+        for (look, &off) in seen.iter().enumerate() {
             // Up to the end, not at it, where a jump may have been made.
-            let time = if u == 1.0 { end.next_down().max(start) } else { start + u * (end - start) };
-            worst.note(off, time);
+            worst.note(off, time(look).min(end.next_down().max(start)));
         }
-        let worst = worst.off;
-        for (from, to) in (0..LOOKS.len()).filter_map(|look| peak(&seen, look, worst)) {
-            let time = |look: usize| start + LOOKS[look] * (end - start);
-            let (off, time) = self.refined(spans, (time(from), time(to)), pair, measure);
-            self.worst[pair][at].note(off, time);
+        for look in 0..LOOKS.len() {
+            if let Some((possible, from, to)) = peak(&seen, look).filter(|peak| peak.0 > worst.off) {
+                let promise = Promise { possible, start, from: time(from), to: time(to) };
+                self.promising[pair][at].push(promise);
+            }
+        }
+    }
+
+    /// Looks for the most promising peaks.
+    fn refine(&mut self) {
+        for pair in 0..self.worst.len() {
+            for measure in Measure::ALL {
+                let at = measure as usize;
+                let mut promising = std::mem::take(&mut self.promising[pair][at]);
+                promising.sort_by(|a, b| b.possible.total_cmp(&a.possible));
+                for promise in promising.into_iter().take(PEAKS) {
+                    if promise.possible > self.worst[pair][at].off {
+                        let spans = self.sweep.spans(promise.start);
+                        let (off, time) = self.refined(&spans, (promise.from, promise.to), pair, measure);
+                        self.worst[pair][at].note(off, time);
+                    }
+                }
+            }
         }
     }
 
@@ -373,13 +414,14 @@ impl Row<'_> {
     }
 }
 
-/// The looks beside a highest one between which there may be a peak above `worst`.
+/// What a peak beside a look may reach, where that look is higher than its neighbours,
+/// and the looks between which it is.
 ///
 /// Inside, the parabola through three looks tells how far the peak is above the middle
 /// one; four times that serves for peaks as sharp as a roof. At an end there is no third
 /// look: the steepest way to it goes on for a whole one. Less than a thousandth more is
 /// not looked for there.
-fn peak(seen: &[f64; LOOKS.len()], look: usize, worst: f64) -> Option<(usize, usize)> {
+fn peak(seen: &[f64; LOOKS.len()], look: usize) -> Option<(f64, usize, usize)> {
     const LEAST: f64 = 1e-3;
     let last = LOOKS.len() - 1;
     let (from, to) = (look.saturating_sub(1), last.min(look + 1));
@@ -394,5 +436,5 @@ fn peak(seen: &[f64; LOOKS.len()], look: usize, worst: f64) -> Option<(usize, us
         let bend = 2.0 * at - seen[from] - seen[to];
         at + (seen[to] - seen[from]).powi(2) / (2.0 * bend.max(f64::MIN_POSITIVE))
     };
-    (possible > worst).then_some((from, to))
+    Some((possible, from, to))
 }

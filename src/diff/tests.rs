@@ -360,6 +360,9 @@ fn what_cannot_be_played_is_refused() {
         assert!(matches!(error, Error::Asset { which: Which::B, .. }), "{error:?}");
         assert!(error.to_string().contains(reason), "{error}");
     }
+    let mut far = file(json!([{"name": "n", "translation": [0, 1e39, 0]}]), &[]);
+    let error = files(&mut far, &mut good(), &[]).unwrap_err();
+    assert!(error.to_string().contains("/nodes/0: expected finite numbers"), "{error}");
 }
 
 #[test]

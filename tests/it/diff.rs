@@ -184,7 +184,9 @@ fn what_cannot_be_played_is_refused() {
     assert_eq!((&line["input"], &line["exitCode"]), (&json!("b.glb"), &json!(1)));
     two.run(&["diff", "a.glb", "none.glb"]).exits(1).says(&["none.glb: expected a file"]);
     fs::write(two.path("text.glb"), "no glTF").unwrap();
-    two.run(&["diff", "text.glb", "a.glb"]).exits(1).says(&["text.glb", "not a glTF 2.0 file"]);
+    let ran =
+        two.run(&["diff", "text.glb", "a.glb", "--json"]).exits(1).says(&["text.glb", "not a glTF 2.0 file"]);
+    assert_eq!(ran.json()["input"], "text.glb");
     let two = Two::new(|glb| glb.rotation(0, 9)[4..8].copy_from_slice(&f32::NAN.to_le_bytes()));
     two.diff(&[]).exits(1).says(&["b.glb", "expected finite numbers"]);
 }
