@@ -8,10 +8,10 @@
 //! What is found is attained: the files do differ by that much at that time. It is the
 //! largest of all where both move along straight lines or in steps, as the difference of
 //! two lines is largest at an end. Elsewhere every interval between neighbouring keys of
-//! either file is looked at in five places and refined around its peak; between two of
-//! those places, h seconds apart, a rotation can be off by at most
-//! h/2 · (|ω₂ − ω₁| + |ω₁| · φ) more, where ω are the angular velocities and φ the largest
-//! angle there.
+//! either file is looked at in five places, and the most promising peaks between them are
+//! sought out; between two of those places, h seconds apart, two slerps can be off by at
+//! most h/2 · (|ω₂ − ω₁| + |ω₁| · φ) more, where ω are their angular velocities and φ the
+//! largest angle there.
 
 mod matching;
 mod measure;
