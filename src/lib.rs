@@ -7,7 +7,8 @@
 //! clock, [`sample`] evaluates them at the times a viewer will play, or [`reduce`]
 //! at as few as a tolerance allows, [`mod@write`] makes a glTF file of the samples, [`asset`] loads any glTF
 //! file back, [`check`] judges it and `render` draws it. [`convert`] is these
-//! stages in a row.
+//! stages in a row. [`diff`] compares two files, and [`report`] writes findings
+//! for other programs.
 //!
 //! # Conventions
 //!
@@ -22,6 +23,7 @@ pub mod check;
 pub mod clip;
 pub mod convert;
 pub mod curve;
+pub mod diff;
 pub mod inspect;
 pub mod math;
 pub mod moves;
@@ -31,6 +33,7 @@ pub mod read;
 pub mod reduce;
 #[cfg(feature = "render")]
 pub mod render;
+pub mod report;
 pub mod sample;
 pub mod table;
 pub mod write;

@@ -154,6 +154,19 @@ impl Asset {
         })
     }
 
+    /// The times of some keys of a channel, and what is stored for each:
+    /// [`Channel::stored_width`] numbers.
+    pub(crate) fn keys(
+        &mut self,
+        channel: &Channel,
+        keys: Range<usize>,
+    ) -> Result<(Vec<f32>, Vec<f32>), Error> {
+        let (mut times, mut values) = (Vec::new(), Vec::new());
+        self.floats_into(&channel.times, keys.clone(), &mut times)?;
+        self.floats_into(&channel.values, channel.value_range(keys), &mut values)?;
+        Ok((times, values))
+    }
+
     /// The time of a key, seconds.
     fn time(&mut self, channel: &Channel, key: usize) -> Result<f64, Error> {
         let mut time = Vec::new();
@@ -270,62 +283,100 @@ pub fn at_key<'a, T>(channel: &Channel, stored: &'a [T]) -> &'a [T] {
 /// The value a fraction `u` of the way between two keys `length` seconds
 /// apart, of the numbers stored for each.
 pub fn between(channel: &Channel, from: &[f64], to: &[f64], u: f64, length: f64) -> Vec<f64> {
+    let mut value = Vec::with_capacity(channel.width);
+    between_into(channel, (from, to), u, length, &mut value);
+    value
+}
+
+/// [`between`] into `out`, which is cleared first.
+pub(crate) fn between_into(
+    channel: &Channel,
+    (from, to): (&[f64], &[f64]),
+    u: f64,
+    length: f64,
+    out: &mut Vec<f64>,
+) {
     let rotation = channel.property == Property::Rotation;
+    out.clear();
     match channel.interpolation {
-        Interpolation::Step => from.to_vec(),
-        Interpolation::Linear if rotation => slerp(four(from), four(to), u).to_vec(),
-        Interpolation::Linear => from.iter().zip(to).map(|(a, b)| a + u * (b - a)).collect(),
+        Interpolation::Step => out.extend(from),
+        Interpolation::Linear if rotation => out.extend(slerp(four(from), four(to), u)),
+        Interpolation::Linear => out.extend(from.iter().zip(to).map(|(a, b)| a + u * (b - a))),
         Interpolation::CubicSpline => {
-            let value = hermite(channel.width, from, to, u, length);
-            match rotation {
-                true => normalized(four(&value)).to_vec(),
-                false => value,
+            out.extend(hermite(channel.width, from, to, u, length));
+            if rotation {
+                let unit = normalized(four(out));
+                out.copy_from_slice(&unit);
             }
         }
     }
 }
 
 /// The four numbers of a rotation; missing ones are zero.
-fn four(q: &[f64]) -> [f64; 4] {
+pub(crate) fn four(q: &[f64]) -> [f64; 4] {
     std::array::from_fn(|i| q.get(i).copied().unwrap_or(0.0))
 }
 
 /// Spherical interpolation of unit quaternions, the shorter way round.
-///
-/// The angle comes from the chord, |a − b| = 2 sin(φ/2), which is accurate
-/// for near and for far quaternions alike; a cosine is not for near ones.
 pub fn slerp(a: [f64; 4], b: [f64; 4], u: f64) -> [f64; 4] {
-    let sign = if dot(a, b) < 0.0 { -1.0 } else { 1.0 };
-    let b = b.map(|x| sign * x);
-    let length = |f: fn(f64, f64) -> f64| {
-        let v: [f64; 4] = std::array::from_fn(|i| f(a[i], b[i]));
-        dot(v, v).sqrt()
-    };
-    let angle = 2.0 * length(|x, y| x - y).atan2(length(|x, y| x + y));
-    // Below this, sin(uφ)/sin φ differs from u by less than an f64's last bit.
-    let (from, to) = if angle < 1e-8 {
-        (1.0 - u, u)
-    } else {
-        let sine = angle.sin();
-        (((1.0 - u) * angle).sin() / sine, (u * angle).sin() / sine)
-    };
-    std::array::from_fn(|i| from * a[i] + to * b[i])
+    Arc::new(a, b).at(u)
+}
+
+/// The shorter way from one rotation to another, made ready for any number of steps.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Arc {
+    from: [f64; 4],
+    to: [f64; 4],
+    /// Half the angle of the turn.
+    angle: f64,
+    sine: f64,
+}
+
+impl Arc {
+    /// The angle comes from the chord, |a − b| = 2 sin(φ/2), which is accurate
+    /// for near and for far quaternions alike; a cosine is not for near ones.
+    pub(crate) fn new(a: [f64; 4], b: [f64; 4]) -> Arc {
+        let sign = if dot(a, b) < 0.0 { -1.0 } else { 1.0 };
+        let b = b.map(|x| sign * x);
+        let length = |f: fn(f64, f64) -> f64| {
+            let v: [f64; 4] = std::array::from_fn(|i| f(a[i], b[i]));
+            dot(v, v).sqrt()
+        };
+        let angle = 2.0 * length(|x, y| x - y).atan2(length(|x, y| x + y));
+        Arc { from: a, to: b, angle, sine: angle.sin() }
+    }
+
+    /// The rotation a fraction `u` of the way.
+    pub(crate) fn at(&self, u: f64) -> [f64; 4] {
+        let Arc { from, to, angle, sine } = *self;
+        // Below this, sin(uφ)/sin φ differs from u by less than an f64's last bit.
+        let (p, q) = if angle < 1e-8 {
+            (1.0 - u, u)
+        } else {
+            (((1.0 - u) * angle).sin() / sine, (u * angle).sin() / sine)
+        };
+        std::array::from_fn(|i| p * from[i] + q * to[i])
+    }
 }
 
 /// Hermite's cubic between two keys, each stored as tangent in, value,
 /// tangent out; tangents are per second.
-fn hermite(width: usize, from: &[f64], to: &[f64], u: f64, length: f64) -> Vec<f64> {
+fn hermite<'a>(
+    width: usize,
+    from: &'a [f64],
+    to: &'a [f64],
+    u: f64,
+    length: f64,
+) -> impl Iterator<Item = f64> + 'a {
     let (u2, u3) = (u * u, u * u * u);
-    (0..width)
-        .map(|i| {
-            let (value, tangent_out) = (from[width + i], from[2 * width + i]);
-            let (tangent_in, next) = (to[i], to[width + i]);
-            (2.0 * u3 - 3.0 * u2 + 1.0) * value
-                + length * (u3 - 2.0 * u2 + u) * tangent_out
-                + (3.0 * u2 - 2.0 * u3) * next
-                + length * (u3 - u2) * tangent_in
-        })
-        .collect()
+    (0..width).map(move |i| {
+        let (value, tangent_out) = (from[width + i], from[2 * width + i]);
+        let (tangent_in, next) = (to[i], to[width + i]);
+        (2.0 * u3 - 3.0 * u2 + 1.0) * value
+            + length * (u3 - 2.0 * u2 + u) * tangent_out
+            + (3.0 * u2 - 2.0 * u3) * next
+            + length * (u3 - u2) * tangent_in
+    })
 }
 
 /// The unit quaternion of the same direction; zero stays zero.
@@ -335,7 +386,7 @@ fn normalized(q: [f64; 4]) -> [f64; 4] {
 }
 
 fn dot(a: [f64; 4], b: [f64; 4]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
 }
 
 /// Goes through all keys of a channel from first to last, a block at a time.

@@ -186,6 +186,12 @@ fn four(q: &[f64]) -> [f64; 4] {
 /// tiniest angles, where a cosine would round them to zero. What is no
 /// rotation, zero or not finite, is as far as can be.
 pub fn degrees(a: [f64; 4], b: [f64; 4]) -> f64 {
+    let (sine, cosine) = half_angle(a, b);
+    2.0 * sine.atan2(cosine).to_degrees()
+}
+
+/// The sine and cosine of half the angle of [`degrees`], both times the same number.
+pub(crate) fn half_angle(a: [f64; 4], b: [f64; 4]) -> (f64, f64) {
     let [ax, ay, az, aw] = a;
     let [bx, by, bz, bw] = b;
     // The relative rotation, a⁻¹ b but for its length.
@@ -195,9 +201,9 @@ pub fn degrees(a: [f64; 4], b: [f64; 4]) -> f64 {
     let w = aw * bw + ax * bx + ay * by + az * bz;
     let sine = (x * x + y * y + z * z).sqrt();
     if !(sine.is_finite() && w.is_finite()) || (sine == 0.0 && w == 0.0) {
-        return 180.0;
+        return (1.0, 0.0);
     }
-    2.0 * sine.atan2(w.abs()).to_degrees()
+    (sine, w.abs())
 }
 
 #[cfg(test)]

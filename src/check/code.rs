@@ -120,15 +120,26 @@ catalogue! {
     InputChanged "INPUT_CHANGED" Warning "The input is not the one that the file was made from."
     NothingVisible "NOTHING_VISIBLE" Error "A picture of the file shows next to nothing."
     NothingMoves "NOTHING_MOVES" Warning "Pictures at different times of a clip with changing channels are the same."
+    DifferenceLimit "DIFFERENCE_LIMIT" Error "Two files move a node more differently than allowed."
+    NothingInCommon "NOTHING_IN_COMMON" Error "Two files share no node, or no clip, by which they could be compared."
+    OnlyInOne "ONLY_IN_ONE" Warning "A clip, a node or a channel is in one of two files only."
+    MatchedOtherwise "MATCHED_OTHERWISE" Info "Names are missing, double or different; what belongs together was found otherwise."
+    LengthDiffers "LENGTH_DIFFERS" Info "A clip is not equally long in two files; the shorter one holds its last pose."
+    NotCompared "NOT_COMPARED" Info "A channel that only an extension can play was not compared."
 }
 
 impl Code {
+    /// Where on the page of the catalogue it stands.
+    pub fn anchor(self) -> String {
+        self.as_str().to_ascii_lowercase().replace('_', "-")
+    }
+
     /// The catalogue as a Markdown table.
     pub fn table() -> String {
         let mut table = String::from("| Code | Severity | Meaning |\n|---|---|---|\n");
         for code in Code::ALL {
             let (text, severity, meaning) = (code.as_str(), code.severity(), code.meaning());
-            table += &format!("| `{text}` | {severity} | {meaning} |\n");
+            table += &format!("| <a name=\"{}\"></a>`{text}` | {severity} | {meaning} |\n", code.anchor());
         }
         table
     }

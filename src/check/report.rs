@@ -109,7 +109,7 @@ impl Report {
     }
 
     /// Findings that were counted but not kept, by code.
-    fn left_out(&self) -> impl Iterator<Item = (Code, u64)> {
+    pub(crate) fn left_out(&self) -> impl Iterator<Item = (Code, u64)> {
         let beyond = |(&code, &count): (&Code, &u64)| (count > KEPT).then(|| (code, count - KEPT));
         self.counts.iter().filter_map(beyond)
     }

@@ -682,7 +682,18 @@ fn reports_count_what_they_leave_out() {
 fn every_code_has_a_file_that_is_broken_so() {
     let source: String = include_str!("tests.rs").split_whitespace().collect();
     // These come from comparing and from looking, which is done elsewhere.
-    let elsewhere = ["MOTION_DIFFERS", "INPUT_CHANGED", "NOTHING_VISIBLE", "NOTHING_MOVES"];
+    let elsewhere = [
+        "MOTION_DIFFERS",
+        "INPUT_CHANGED",
+        "NOTHING_VISIBLE",
+        "NOTHING_MOVES",
+        "DIFFERENCE_LIMIT",
+        "NOTHING_IN_COMMON",
+        "ONLY_IN_ONE",
+        "MATCHED_OTHERWISE",
+        "LENGTH_DIFFERS",
+        "NOT_COMPARED",
+    ];
     for code in Code::ALL.iter().map(|code| code.as_str()) {
         let expected = source.contains(&format!("(\"{code}\","));
         assert!(expected || elsewhere.contains(&code), "{code}");

@@ -9,6 +9,7 @@ use dat2glb::moves::{Copies, Orient, Shape};
 use dat2glb::orient::{Axis, Frame, Level};
 use dat2glb::path::{Ease, PathEnds, Timing};
 use dat2glb::read::Order;
+use dat2glb::report::Format;
 use dat2glb::sample::{Encoding, Fps, Writing};
 use dat2glb::table::Notation;
 use dat2glb::write::Colour;
@@ -38,6 +39,15 @@ pub(crate) enum Command {
     Convert(Convert),
     /// Check any .glb or .gltf, and compare its motion with its input
     Check(Check),
+    /// Find the largest differences between the motions of two .glb or .gltf files
+    ///
+    /// Clips and nodes are matched by name; those whose names are missing or double by
+    /// their path in the tree, then by their order. Both files are played as the glTF
+    /// specification says, whatever their interpolation; a shorter clip holds its last
+    /// pose. Local motion is a node's relative to its parent, world motion that of its
+    /// axes and its origin. Without limits the differences are told and the exit code is
+    /// 0; above a limit it is 3. What only one file has fails under --strict.
+    Diff(Diff),
     /// Draw a picture of a .glb or .gltf at a time of one of its clips
     #[cfg(feature = "render")]
     Thumbnail(Thumbnail),
@@ -203,12 +213,74 @@ pub(crate) struct Check {
     #[cfg(feature = "render")]
     #[command(flatten)]
     pub(crate) renderer: RendererFlag,
-    /// Print the report as JSON on standard output, a line a file
-    #[arg(long)]
-    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) report: ReportFlag,
     /// Print nothing but what cannot be read; the exit code tells
     #[arg(short, long)]
     pub(crate) quiet: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Diff {
+    /// The first file, as it was: .glb, .gltf
+    #[arg(value_name = "A", value_hint = ValueHint::FilePath)]
+    pub(crate) a: PathBuf,
+    /// The second file, as it is: .glb, .gltf
+    #[arg(value_name = "B", value_hint = ValueHint::FilePath)]
+    pub(crate) b: PathBuf,
+    /// A clip or node OLD of the first file is NEW in the second; may be said several
+    /// times
+    #[arg(long, value_name = "OLD=NEW", value_parser = mapping)]
+    pub(crate) map: Vec<(String, String)>,
+    /// The largest angle, degrees, by which a node may be turned differently, locally and
+    /// in the world
+    #[arg(long, value_name = "DEG", value_parser = degrees)]
+    pub(crate) max_error: Option<f64>,
+    /// The largest distance, units, between the places of a node, locally and in the world
+    #[arg(long, value_name = "UNITS", value_parser = degrees)]
+    pub(crate) max_distance: Option<f64>,
+    /// The largest difference of a scale
+    #[arg(long, value_name = "X", value_parser = degrees)]
+    pub(crate) max_scale: Option<f64>,
+    /// The largest difference of a morph weight
+    #[arg(long, value_name = "X", value_parser = degrees)]
+    pub(crate) max_weight: Option<f64>,
+    /// Warnings fail too: clips, nodes and channels that only one file has
+    #[arg(long)]
+    pub(crate) strict: bool,
+    /// Draw both poses where they differ most, the first file on the left
+    #[cfg(feature = "render")]
+    #[arg(long, value_name = "OUT.png", value_hint = ValueHint::FilePath)]
+    pub(crate) picture: Option<PathBuf>,
+    /// Width and height of each half of the picture in pixels
+    #[cfg(feature = "render")]
+    #[arg(long, value_name = "WxH", default_value = "512x512", requires = "picture", value_parser = size)]
+    pub(crate) size: (u32, u32),
+    #[cfg(feature = "render")]
+    #[command(flatten)]
+    pub(crate) renderer: RendererFlag,
+    #[command(flatten)]
+    pub(crate) report: ReportFlag,
+    /// Print nothing but what cannot be read; the exit code tells
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+/// How findings are told.
+#[derive(Args, Debug)]
+pub(crate) struct ReportFlag {
+    /// How the report is written on standard output
+    #[arg(long, value_name = "FORMAT", default_value = "text", value_parser = formats())]
+    report: Format,
+    /// Short for --report json
+    #[arg(long, conflicts_with = "report")]
+    json: bool,
+}
+
+impl ReportFlag {
+    pub(crate) fn format(&self) -> Format {
+        if self.json { Format::Json } else { self.report }
+    }
 }
 
 #[cfg(feature = "render")]
@@ -567,6 +639,17 @@ fn ends() -> ValueParser {
     named(Ends::from_name, values.to_vec())
 }
 
+fn formats() -> ValueParser {
+    let names = Format::ALL.iter().map(|format| (format.name(), format.summary()));
+    named(Format::from_name, names.collect())
+}
+
+fn mapping(text: &str) -> Result<(String, String), String> {
+    let names = text.split_once('=').filter(|(old, new)| !old.is_empty() && !new.is_empty());
+    let (old, new) = names.ok_or_else(|| "expected two names, such as Hips=pelvis".to_owned())?;
+    Ok((old.to_owned(), new.to_owned()))
+}
+
 fn degrees(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| "expected degrees or units, a number".to_owned())?;
     if value >= 0.0 { Ok(value) } else { Err("expected degrees or units, 0 or more".to_owned()) }
@@ -597,8 +680,18 @@ fn time(text: &str) -> Result<dat2glb::render::Time, String> {
 /// else is left for the parser to wonder about.
 pub(crate) fn with_convert_spelled_out(mut arguments: Vec<OsString>) -> Vec<OsString> {
     let is_command = |word: &OsStr| {
-        let commands =
-            ["convert", "check", "thumbnail", "inspect", "sample", "example", "completions", "man", "help"];
+        let commands = [
+            "convert",
+            "check",
+            "diff",
+            "thumbnail",
+            "inspect",
+            "sample",
+            "example",
+            "completions",
+            "man",
+            "help",
+        ];
         commands.iter().any(|command| word == *command)
     };
     let looks_like_a_file = |word: &OsStr| {

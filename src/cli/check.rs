@@ -6,27 +6,56 @@ use super::files;
 use dat2glb::asset::{self, Asset};
 use dat2glb::check::motion::{self, ClipMotion, Given};
 use dat2glb::check::{self, Code, Report, Severity};
+use dat2glb::report::{Format, Run, Subject};
 use std::io::{self, Write};
 use std::path::Path;
 
 pub(super) fn run(options: &Check) -> Result<Exit, Failure> {
     let mut worst = Exit::Done;
+    let mut subjects = Vec::new();
     for file in &options.files {
-        match one(file, options) {
-            Ok(exit) => worst = worst.max(exit),
+        let outcome = match one(file, options) {
+            Ok(report) => {
+                worst = worst.max(judged(&report, limit(options)));
+                Ok(report)
+            }
             Err(failure) => {
                 failure.print();
-                if options.json {
+                if options.report.format() == Format::Json {
                     super::summary::print_failure(file, &failure)?;
                 }
                 worst = worst.max(failure.exit);
+                Err(failure.message)
             }
-        }
+        };
+        subjects.push(Subject { file: file.display().to_string(), outcome });
+    }
+    if !options.quiet {
+        let run = Run { command: "check", subjects, fails_from: limit(options), exit: worst as u8 };
+        print_document(&run, options.report.format())?;
     }
     Ok(worst)
 }
 
-fn one(file: &Path, options: &Check) -> Result<Exit, Failure> {
+/// What counts as failed.
+fn limit(options: &Check) -> Severity {
+    if options.strict { Severity::Warning } else { Severity::Error }
+}
+
+/// The exit code of a report, of which findings from a severity on fail.
+pub(super) fn judged(report: &Report, fails_from: Severity) -> Exit {
+    if report.worst() >= Some(fails_from) { Exit::Failed } else { Exit::Done }
+}
+
+/// Prints a run in a format that takes all of it together.
+pub(super) fn print_document(run: &Run, format: Format) -> Result<(), Failure> {
+    match run.document(format) {
+        Some(document) => shown(io::stdout().write_all(document.as_bytes())),
+        None => Ok(()),
+    }
+}
+
+fn one(file: &Path, options: &Check) -> Result<Report, Failure> {
     let (report, motions) = match files::asset_or_schema(file)? {
         Ok(mut asset) => {
             let mut report = check::asset(&mut asset);
@@ -44,8 +73,7 @@ fn one(file: &Path, options: &Check) -> Result<Exit, Failure> {
     if !options.quiet {
         shown(print(file, options, &report, &motions))?;
     }
-    let limit = if options.strict { Severity::Warning } else { Severity::Error };
-    Ok(if report.worst() >= Some(limit) { Exit::Failed } else { Exit::Done })
+    Ok(report)
 }
 
 fn compare(
@@ -105,7 +133,10 @@ fn look(_: &mut Asset, _: &Path, _: &Check, _: &mut Report) -> Result<(), Failur
 fn print(file: &Path, options: &Check, report: &Report, motions: &[ClipMotion]) -> io::Result<()> {
     let name = file.display().to_string();
     let mut out = io::stdout().lock();
-    if options.json {
+    if !matches!(options.report.format(), Format::Text | Format::Json) {
+        return Ok(());
+    }
+    if options.report.format() == Format::Json {
         let mut value = report.to_json();
         value["file"] = name.into();
         if !options.against.is_empty() {
@@ -132,7 +163,12 @@ fn print(file: &Path, options: &Check, report: &Report, motions: &[ClipMotion]) 
             writeln!(out, "{name}:   {}{}: {}{limit}", motion.node, what(motion.property), offs.join(", "))?;
         }
     }
-    write!(out, "{}", report.text(&name))?;
+    print_findings(&mut out, &name, report)
+}
+
+/// The findings of a file for people, and how many there are.
+pub(super) fn print_findings(out: &mut impl Write, name: &str, report: &Report) -> io::Result<()> {
+    write!(out, "{}", report.text(name))?;
     let count = |severity, one: &str| match report.count(severity) {
         1 => format!("1 {one}"),
         n => format!("{n} {one}s"),

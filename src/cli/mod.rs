@@ -4,6 +4,7 @@ mod args;
 mod camera;
 mod check;
 mod convert;
+mod diff;
 mod example;
 mod exit;
 mod files;
@@ -49,6 +50,7 @@ pub(crate) fn run(arguments: Vec<OsString>) -> ExitCode {
     finish(match cli.command {
         Command::Convert(options) => convert::run(&options),
         Command::Check(options) => check::run(&options),
+        Command::Diff(options) => diff::run(&options),
         #[cfg(feature = "render")]
         Command::Thumbnail(options) => thumbnail::run(&options),
         Command::Inspect(options) => inspect::run(&options),

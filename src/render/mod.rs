@@ -1,7 +1,7 @@
 //! Draws a glTF file at a time of one of its clips.
 //!
 //! [`thumbnail`] makes one picture; a [`Session`] reads the file once and
-//! makes many. What is drawn is glTF 2.0's core: triangles in a tree of nodes
+//! makes many, and [`side_by_side`] shows two files. What is drawn is glTF 2.0's core: triangles in a tree of nodes
 //! that translations, rotations and scales move, with base colours, textures
 //! and vertex colours. Skins and morph targets rest, and a note says so.
 //!
@@ -18,6 +18,7 @@ mod layer;
 mod load;
 mod look;
 mod mesh;
+mod pair;
 mod pose;
 mod scene;
 mod session;
@@ -31,6 +32,7 @@ mod triangle;
 pub use error::Error;
 pub use layer::Background;
 pub use look::{ClipLook, LEAST_VISIBLE, Look};
+pub use pair::{Moment, side_by_side};
 pub use session::Session;
 pub use time::Time;
 

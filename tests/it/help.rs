@@ -5,6 +5,7 @@ use crate::support::tool::{finish, program, run};
 const COMMANDS: &[&str] = &[
     "convert",
     "check",
+    "diff",
     #[cfg(feature = "render")]
     "thumbnail",
     "inspect",

@@ -14,6 +14,8 @@ mod convert_motion;
 #[cfg(feature = "cli")]
 mod convert_outputs;
 #[cfg(feature = "cli")]
+mod diff;
+#[cfg(feature = "cli")]
 mod example;
 #[cfg(feature = "cli")]
 mod fewest;
@@ -25,6 +27,8 @@ mod inspect;
 mod paths;
 #[cfg(feature = "cli")]
 mod refused;
+#[cfg(feature = "cli")]
+mod reports;
 #[cfg(feature = "cli")]
 mod sample;
 #[cfg(all(feature = "cli", feature = "render"))]

@@ -1,7 +1,11 @@
 //! What several subjects need: paths, the program, files read by another crate.
 
 #[cfg(feature = "cli")]
+pub(crate) mod altered;
+#[cfg(feature = "cli")]
 pub(crate) mod loaded;
+#[cfg(feature = "cli")]
+pub(crate) mod schema;
 #[cfg(all(feature = "cli", feature = "render"))]
 pub(crate) mod stage;
 #[cfg(feature = "cli")]
