@@ -9,7 +9,7 @@ pub(crate) mod deviation;
 mod fps;
 mod rotations;
 mod timeline;
-mod translations;
+pub(crate) mod translations;
 pub(crate) mod worst;
 
 pub use fps::{Fps, NotARate};
