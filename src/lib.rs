@@ -4,11 +4,11 @@
 //! [`read`] turns the text of a `.dat` file into a [`clip`] or into points,
 //! [`curve`] runs a smooth motion through its keys, [`path`] through points,
 //! and [`orient`] turns an object on its way; [`moves`] puts them on one
-//! clock, [`sample`] evaluates them at the times a viewer will play, or [`reduce`]
-//! at as few as a tolerance allows, [`mod@write`] makes a glTF file of the samples, [`asset`] loads any glTF
-//! file back, [`check`] judges it and `render` draws it. [`convert`] is these
-//! stages in a row. [`diff`] compares two files, and [`report`] writes findings
-//! for other programs.
+//! clock, [`sample`] evaluates them at the times a viewer will play, [`reduce`]
+//! finds as few times as a tolerance allows, [`mod@write`] makes a glTF file of
+//! the samples, [`asset`] loads any glTF file back, [`check`] judges it and
+//! `render` draws it. [`convert`] is these stages in a row. [`diff`] compares two
+//! files, and [`report`] writes findings for other programs.
 //!
 //! # Conventions
 //!

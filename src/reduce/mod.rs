@@ -124,6 +124,8 @@ fn check(options: &Options, least: f64) -> Result<(), Error> {
 
 /// What rounding may add to a step, relative to it: below anyone's notice.
 const STEP_SLACK: f64 = 2e-5;
+/// Below so many keys both searches are run.
+const FEW: usize = 100;
 /// Distances below this part of the tolerance need no close bound.
 const NEGLIGIBLE: f64 = 1e-3;
 
@@ -142,9 +144,19 @@ fn reduce<C: Curve<Value: Value<Stored = [f32; N]>>, const N: usize>(
         return Ok(written(curve, &keys, unit));
     }
     let stuck = |Stuck(time)| Error::Times { time, tolerance: asked };
-    let keys = search::fewest(curve, &stops, limits).map_err(stuck)?;
-    let proven = proof::prove(curve, &keys, tolerance, NEGLIGIBLE * tolerance).map_err(stuck)?;
-    Ok(written(curve, &proven, unit))
+    let found = |limits: Limits| {
+        let keys = search::fewest(curve, &stops, limits)?;
+        proof::prove(curve, &keys, tolerance, NEGLIGIBLE * tolerance)
+    };
+    let keys = written(curve, &found(limits).map_err(stuck)?, unit);
+    // Off the curve the search is not exact: few keys, and those that a step limits, may
+    // be fewer on it.
+    let doubtful = keys.times.len() < FEW || keys.facts.largest_step * unit > 0.95 * step;
+    if limits.on_curve || !doubtful {
+        return Ok(keys);
+    }
+    let on_curve = found(Limits { on_curve: true, ..limits }).map(|proven| written(curve, &proven, unit));
+    Ok(on_curve.ok().filter(|other| other.times.len() < keys.times.len()).unwrap_or(keys))
 }
 
 /// Times that must be keys, as float32: the first, corners, the last.

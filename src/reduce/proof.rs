@@ -27,6 +27,11 @@ pub(super) struct Proven<V: Value> {
 /// Where an interval is probed before anything is bounded.
 const PROBES: [f64; 3] = [0.21, 0.5, 0.79];
 
+/// How many times as many keys are given up on: the curve's rates are known too badly.
+const MORE: usize = 4;
+/// How often an interval between two keys is halved at most.
+const HALVINGS: u32 = 8;
+
 /// Proves that playback of the keys stays within `tolerance` of the curve, or makes it
 /// so; `negligible` distances are not refined.
 pub(super) fn prove<C: Curve>(
@@ -35,21 +40,21 @@ pub(super) fn prove<C: Curve>(
     tolerance: f64,
     negligible: f64,
 ) -> Result<Proven<C::Value>, Stuck> {
-    let way = keys.windows(2).map(|pair| pair[0].value.distance(pair[1].value)).fold(0.0, f64::max);
-    let other = C::Value::other_blend().map_or(0.0, |blend| (blend.uneven_lengths)(way));
-    let uneven = [C::Value::uneven_lengths(way), other];
-    let limit = tolerance - uneven[0];
     let worst = Worst::new(negligible);
-    let mut proof = Proof { curve, limit, linear: worst.within(limit), other: worst, moved: 0.0 };
+    let mut proof = Proof { curve, tolerance, linear: worst, other: worst, uneven: [0.0; 2], moved: 0.0 };
     keys.windows(2).for_each(|pair| proof.probe(&Interval { curve, a: pair[0], b: pair[1] }));
     let mut proven = vec![keys[0]];
+    let most = MORE * keys.len();
     for pair in keys.windows(2) {
-        proof.interval(pair[0], pair[1], &mut proven)?;
+        proof.interval(pair[0], pair[1], HALVINGS, &mut proven)?;
+        if proven.len() > most {
+            return Err(Stuck(f64::from(pair[0].time)));
+        }
     }
     Ok(Proven {
         keys: proven,
-        deviation: proof.linear.bound() + uneven[0],
-        other: proof.other.bound() + uneven[1],
+        deviation: (proof.linear.bound() + proof.uneven[0]).min(tolerance),
+        other: proof.other.bound() + proof.uneven[1],
         moved: proof.moved,
     })
 }
@@ -57,17 +62,18 @@ pub(super) fn prove<C: Curve>(
 /// A bound of the distance of a curve from one value, or none if it exceeds `tolerance`.
 pub(super) fn held<C: Curve>(curve: &C, key: Key<C::Value>, end: f32, tolerance: f64) -> Option<f64> {
     let interval = Interval { curve, a: key, b: Key { time: end, ..key } };
-    let mut worst = Worst::new(0.1 * tolerance).within(tolerance);
+    let mut worst = Worst::new(0.1 * tolerance).one_more(tolerance);
     interval.parts(|part, rates| bound_part(&mut worst, &interval.linear(), part, rates));
     (worst.bound() <= tolerance).then(|| worst.bound())
 }
 
 struct Proof<'a, C: Curve> {
     curve: &'a C,
-    /// The tolerance less what players differ by over keys whose lengths are not quite one.
-    limit: f64,
+    tolerance: f64,
     linear: Worst,
     other: Worst,
+    /// What players differ by at most over keys whose lengths are not quite one.
+    uneven: [f64; 2],
     moved: f64,
 }
 
@@ -78,7 +84,7 @@ impl<C: Curve> Proof<'_, C> {
         for u in PROBES {
             let t = from + u * (to - from);
             let linear = interval.linear().at(t);
-            if linear <= self.limit {
+            if linear <= self.tolerance {
                 self.linear.note(linear);
             }
             if let Some(blend) = C::Value::other_blend() {
@@ -92,25 +98,30 @@ impl<C: Curve> Proof<'_, C> {
         &mut self,
         a: Key<C::Value>,
         b: Key<C::Value>,
+        halvings: u32,
         proven: &mut Vec<Key<C::Value>>,
     ) -> Result<(), Stuck> {
         let interval = Interval { curve: self.curve, a, b };
         let mut parts = Vec::new();
-        let mut linear = self.linear;
+        let way = a.value.distance(b.value);
+        let uneven = C::Value::uneven_lengths(way);
+        let limit = self.tolerance - uneven;
+        let mut linear = self.linear.one_more(limit);
         interval.parts(|part, rates| {
             bound_part(&mut linear, &interval.linear(), part, rates);
             parts.push((part, rates));
         });
-        if linear.bound() > self.limit {
+        if linear.bound() > limit {
             let middle = a.time + 0.5 * (b.time - a.time);
-            if middle <= a.time || middle >= b.time {
+            if middle <= a.time || middle >= b.time || halvings == 0 {
                 return Err(Stuck(f64::from(a.time)));
             }
             let middle = Key::new(middle, self.curve.at(f64::from(middle)));
-            self.interval(a, middle, proven)?;
-            return self.interval(middle, b, proven);
+            self.interval(a, middle, halvings - 1, proven)?;
+            return self.interval(middle, b, halvings - 1, proven);
         }
-        self.linear = linear;
+        self.linear.add(&linear);
+        self.uneven[0] = self.uneven[0].max(uneven);
         self.moved = parts[1..].iter().map(|(part, _)| part.at_from).fold(self.moved, f64::max);
         if self.curve.knots().binary_search_by(|knot| knot.total_cmp(&f64::from(a.time))).is_ok() {
             self.moved = self.moved.max(parts[0].0.at_from);
@@ -121,6 +132,7 @@ impl<C: Curve> Proof<'_, C> {
                 let part = Part { at_from: gap.at(part.from), at_to: gap.at(part.to), ..part };
                 bound_part(&mut self.other, &gap, part, rates);
             }
+            self.uneven[1] = self.uneven[1].max((blend.uneven_lengths)(way));
         }
         proven.push(b);
         Ok(())

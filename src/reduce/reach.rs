@@ -180,6 +180,10 @@ impl<'a, C: Curve> Ahead<'a, C> {
             self.aim = y * (1.0 / tau);
         }
         self.samples.push((tau, y));
+        let off = y - self.aim * tau;
+        if off.dot(off) <= self.aimed() * self.aimed() {
+            return true; // along a straight stretch the others need not be asked again
+        }
         let fitted = self.fit(self.aim, self.samples.len());
         match fitted {
             Some(aim) => self.aim = aim,
@@ -224,8 +228,22 @@ impl<'a, C: Curve> Ahead<'a, C> {
 
     /// When the furthest end is.
     pub(super) fn reach(&self) -> f64 {
-        let furthest = self.start + self.furthest;
+        let furthest = self.start + self.furthest.min(self.stepped());
         self.on_curve.first().map_or(furthest, |key| f64::from(key.time))
+    }
+
+    /// When the curve is a step away, about; with the last sample at the latest.
+    fn stepped(&self) -> f64 {
+        let step = self.limits.step;
+        let mut before = (0.0, 0.0);
+        for &(tau, y) in &self.samples {
+            let way = y.length();
+            if way > step {
+                return before.0 + (tau - before.0) * ((step - before.1) / (way - before.1)).clamp(0.0, 1.0);
+            }
+            before = (tau, way);
+        }
+        before.0
     }
 
     pub(super) fn key(&self) -> &Key<C::Value> {
@@ -236,32 +254,38 @@ impl<'a, C: Curve> Ahead<'a, C> {
     fn accept(&self, time: f32, value: C::Value) -> Option<Key<C::Value>> {
         let key = Key::new(time, value);
         let way = self.key.value.step_to(key.value);
-        (way.length() <= self.limits.step + self.limits.step_slack
-            && self.worst(&key) <= CHECK * self.limits.tolerance)
-            .then_some(key)
+        let short = way.length() <= self.limits.step + self.limits.step_slack;
+        (short && self.serves(&key)).then_some(key)
     }
 
-    /// The largest distance at the samples before a key and at the key, with the peaks
-    /// between samples guessed from their neighbours.
-    fn worst(&self, key: &Key<C::Value>) -> f64 {
+    /// Whether playback up to a key keeps the tolerance at the key and at the samples
+    /// before it, and at the peaks between samples that their neighbours suggest.
+    fn serves(&self, key: &Key<C::Value>) -> bool {
         let tau = f64::from(key.time) - self.start;
         let way = self.key.value.step_to(key.value);
-        let (length, aim) = (way.length(), way * (1.0 / tau));
-        let along = if length > 0.0 { way * (1.0 / length) } else { way };
+        let limit = CHECK * self.limits.tolerance - C::Value::uneven_lengths(way.length());
+        let (length, aim, along) = (way.length(), way * (1.0 / tau), direction(way));
         let off = |&(t, y): &(f64, StepOf<C>)| {
             let off = y - aim * t;
             let forward = off.dot(along);
             let across = C::Value::across(length * t / tau);
             (forward * forward + (off.dot(off) - forward * forward) * across * across).max(0.0).sqrt()
         };
-        let mut worst = key.value.distance(self.curve.at(f64::from(key.time)));
-        let mut before = [(f64::NEG_INFINITY, 0.0), (0.0, self.off)];
-        for sample in self.samples.iter().take_while(|sample| sample.0 < tau) {
-            let now = (sample.0, off(sample));
-            worst = worst.max(now.1).max(crest(before[0], before[1], now));
-            before = [before[1], now];
+        let samples = &self.samples[..self.samples.partition_point(|sample| sample.0 < tau)];
+        // What fails mostly fails about half way.
+        let middle = samples.get(samples.len() / 2);
+        if middle.is_some_and(|sample| off(sample) > limit)
+            || key.value.distance(self.curve.at(f64::from(key.time))) > limit
+        {
+            return false;
         }
-        worst
+        let mut before = [(f64::NEG_INFINITY, 0.0), (0.0, self.off)];
+        samples.iter().all(|sample| {
+            let now = (sample.0, off(sample));
+            let crest = crest(before[0], before[1], now);
+            before = [before[1], now];
+            now.1.max(crest) <= limit
+        })
     }
 
     /// The keys at which the interval may end, the most promising first.
@@ -273,8 +297,9 @@ impl<'a, C: Curve> Ahead<'a, C> {
         if self.closes {
             let there = self.curve.at(f64::from(self.stop.0));
             let exact = Key::new(self.stop.0, there);
-            if self.worst(&exact) <= CHECK * self.limits.tolerance {
-                return self.straight(&exact);
+            let ends = if self.serves(&exact) { self.straight(&exact) } else { Vec::new() };
+            if !ends.is_empty() {
+                return ends;
             }
         }
         let mut ends = if self.limits.on_curve { self.ends_on_curve() } else { self.ends_off_curve() };
@@ -300,8 +325,7 @@ impl<'a, C: Curve> Ahead<'a, C> {
         let u = (f64::from(time) - self.start) / self.whole();
         let on_curve = self.accept(time, self.curve.at(f64::from(time)));
         let on_line = self.accept(time, self.key.value.moved(way * u)).filter(|_| !self.limits.on_curve);
-        let ends: Vec<_> = on_curve.or(on_line).into_iter().collect();
-        if ends.is_empty() { self.ends_on_curve() } else { ends }
+        on_curve.or(on_line).into_iter().collect()
     }
 
     /// Ends off the curve at a stop that is no end: outwards from how the curve bends
@@ -327,15 +351,16 @@ impl<'a, C: Curve> Ahead<'a, C> {
             let time = (self.start + tau) as f32;
             (time > self.key.time).then(|| self.accept(time, self.curve.at(f64::from(time))))?
         };
-        let count = self.samples.len();
-        let Some(last) = (0..count).rev().find(|&i| on_curve(self.samples[i].0).is_some()) else {
-            return Vec::new();
-        };
-        let mut good = self.samples[last].0;
-        let mut bad = self.samples.get(last + 1).map_or(good, |sample| sample.0);
-        let step = self.limits.step / self.seen(good).length();
-        if good * step < bad && on_curve(good * step).is_some() {
-            (good, bad) = (good * step, good * step);
+        let last = self.samples.iter().rposition(|sample| on_curve(sample.0).is_some());
+        let next = last.map_or(0, |last| last + 1);
+        let mut good = last.map_or(0.0, |last| self.samples[last].0);
+        let mut bad = self.samples.get(next).map_or(good, |sample| sample.0);
+        // A curve that turns steadily is a step away at:
+        for tau in [good, bad] {
+            let stepped = tau * self.limits.step / self.seen(tau).length();
+            if good < stepped && stepped < bad && on_curve(stepped).is_some() {
+                good = stepped;
+            }
         }
         for _ in 0..2 * HALVINGS {
             let middle = 0.5 * (good + bad);
@@ -359,7 +384,8 @@ impl<'a, C: Curve> Ahead<'a, C> {
         }
         let cap = self.limits.step / self.aim.length();
         let furthest = self.furthest.min(cap);
-        let mut ends = Vec::new();
+        // Where the step is what limits, offsets only lengthen the way.
+        let mut ends = if self.stepped() < self.furthest { self.ends_on_curve() } else { Vec::new() };
         for share in [1.0, 0.985, 0.96, 0.92, 0.85] {
             let time = (self.start + share * furthest) as f32;
             if time <= self.key.time || time >= self.stop.0 {

@@ -7,7 +7,7 @@ use crate::curve::Rates;
 use crate::math::{Quat, Vec3};
 use crate::sample::blend::{self, Blend};
 use crate::sample::deviation::{self, written};
-use crate::sample::worst::parabola_peak;
+use crate::sample::translations::straight_bound;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::{Add, Mul, Sub};
 
@@ -210,8 +210,7 @@ impl<const N: usize> Value for Numbers<N> {
 
     /// Playback is straight: the difference has the curve's acceleration alone.
     fn bound(rates: Rates, h: f64, at_ends: (f64, f64), speed: f64) -> f64 {
-        let strayed = at_ends.0.max(at_ends.1) + 0.5 * h * (rates.speed + speed);
-        parabola_peak(at_ends.0, at_ends.1, h * h / 8.0 * rates.acceleration).min(strayed)
+        straight_bound(rates, h, at_ends, speed)
     }
 
     fn uneven_lengths(_way: f64) -> f64 {

@@ -104,7 +104,8 @@ impl<'a> Search<'a> {
     fn probe(&mut self, piece: &Piece, i: usize, j: usize) {
         for k in i..j {
             let t = 0.5 * (self.time(k) + self.time(k + 1));
-            let at = self.interval(piece, k, Blend::Slerp).at(t);
+            let played = Blend::Slerp.between(self.playback[k], self.playback[k + 1], 0.5);
+            let at = 0.5 * played.angle_to(piece.at(piece.parameter(t)));
             self.slerp.note(at);
             self.nlerp.note(at);
         }

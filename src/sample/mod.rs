@@ -10,7 +10,7 @@ mod encoding;
 mod fps;
 mod rotations;
 mod timeline;
-mod translations;
+pub(crate) mod translations;
 pub(crate) mod worst;
 
 pub use encoding::{Encoding, code};

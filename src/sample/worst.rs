@@ -50,9 +50,16 @@ impl Worst {
         Worst { found: 0.0, bound: 0.0, negligible, limit: f64::INFINITY }
     }
 
-    /// The same, refined until the bound is within a limit, or something beyond it found.
-    pub(crate) fn within(self, limit: f64) -> Worst {
-        Worst { limit, ..self }
+    /// One stretch more, refined until its bound is within a limit, or something beyond
+    /// it found.
+    pub(crate) fn one_more(&self, limit: f64) -> Worst {
+        Worst { found: self.found.min(limit), bound: 0.0, limit, ..*self }
+    }
+
+    /// Takes what became of one stretch more.
+    pub(crate) fn add(&mut self, one: &Worst) {
+        self.note(one.found);
+        self.settle(one.bound);
     }
 
     /// Takes note of a distance.
@@ -167,9 +174,9 @@ mod tests {
     #[test]
     fn limit_a_little_above_the_peak_is_kept() {
         let wave = Wave { mean: 0.3, swing: 2.0 };
-        let worst = searched(&wave, Worst::new(0.0).within(2.3 + 1e-6));
+        let worst = searched(&wave, Worst::new(0.0).one_more(2.3 + 1e-6));
         assert!(worst.bound() <= 2.3 + 1e-6 && worst.bound() >= 2.3);
-        let beyond = searched(&wave, Worst::new(0.0).within(2.3 - 1e-3));
+        let beyond = searched(&wave, Worst::new(0.0).one_more(2.3 - 1e-3));
         assert!(beyond.bound() > 2.3 - 1e-3);
     }
 }
