@@ -125,6 +125,7 @@ catalogue! {
     OnlyInOne "ONLY_IN_ONE" Warning "A clip, a node or a channel is in one of two files only."
     MatchedOtherwise "MATCHED_OTHERWISE" Info "Names are missing, double or different; what belongs together was found otherwise."
     LengthDiffers "LENGTH_DIFFERS" Info "A clip is not equally long in two files; the shorter one holds its last pose."
+    Outdated "OUTDATED" Error "The file is not what its inputs and options give now, or it is not there."
     NotCompared "NOT_COMPARED" Info "A channel that only an extension can play was not compared."
 }
 

@@ -94,6 +94,13 @@ pub(crate) struct Convert {
     /// Convert again whenever an input changes, until interrupted
     #[arg(long)]
     pub(crate) watch: bool,
+    /// Write nothing: fail with exit code 3 where an output is not what its inputs and
+    /// options give now, numbers to one float32 step
+    #[arg(long, conflicts_with = "watch")]
+    pub(crate) check: bool,
+    /// With --check: how the report is written on standard output
+    #[arg(long, value_name = "FORMAT", requires = "check", conflicts_with = "json", value_parser = formats())]
+    report: Option<Format>,
     /// Leave the key times out: an even grid of samples, which may miss the keys
     #[arg(long)]
     no_key_times: bool,
@@ -155,6 +162,11 @@ impl FewestFlags {
 }
 
 impl Convert {
+    /// How a report is written.
+    pub(crate) fn format(&self) -> Format {
+        if self.json { Format::Json } else { self.report.unwrap_or_default() }
+    }
+
     /// When samples are taken.
     pub(crate) fn sampling(&self) -> Sampling {
         let rate = Sampling::Rate { fps: self.fps, key_times: !self.no_key_times };

@@ -2,15 +2,18 @@
 
 use super::args::Convert;
 use super::camera::CameraSpec;
-use super::exit::{Exit, Failure};
+use super::check::{judged, print_document};
+use super::exit::{Exit, Failure, shown};
 use super::files::{self, Beside, display_name, is_standard};
 use super::output::Output;
 use super::progress::Progress;
 use super::summary::Summary;
 use dat2glb::asset::{Asset, Resolve, Source};
-use dat2glb::check::{self, Report, Severity};
+use dat2glb::check::{self, Code, Report, Severity};
 use dat2glb::convert::{ClipFacts, Options, Plan};
-use dat2glb::moves::Shape;
+use dat2glb::diff::{self, Stale};
+use dat2glb::moves::{Ground, Shape};
+use dat2glb::report::{Format, Run, Subject};
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Cursor, Seek, Write};
@@ -22,6 +25,9 @@ const WRITE_BUFFER: usize = 1 << 20;
 
 pub(super) fn run(options: &Convert) -> Result<Exit, Failure> {
     let jobs = jobs(options)?;
+    if options.check {
+        return check_outputs(&jobs, options);
+    }
     if options.watch {
         return watch(&jobs, options);
     }
@@ -30,6 +36,78 @@ pub(super) fn run(options: &Convert) -> Result<Exit, Failure> {
         worst = worst.max(tell(job, options)?);
     }
     Ok(worst)
+}
+
+/// Says of every output whether it is what its inputs and options give; writes none.
+fn check_outputs(jobs: &[Job], options: &Convert) -> Result<Exit, Failure> {
+    let (mut worst, mut subjects) = (Exit::Done, Vec::new());
+    let format = options.format();
+    for job in jobs {
+        let file = job.output.display().to_string();
+        let outcome = match planned(job, options, |_, _, plan| outdated(job, plan)) {
+            Ok(report) => {
+                worst = worst.max(judged(&report, Severity::Error));
+                if !options.quiet {
+                    shown(say_report(&file, &report, format))?;
+                }
+                Ok(report)
+            }
+            Err(failure) => {
+                failure.print();
+                if format == Format::Json {
+                    super::summary::print_failure(&job.input, &failure)?;
+                }
+                worst = worst.max(failure.exit);
+                Err(failure.message)
+            }
+        };
+        subjects.push(Subject { file, outcome });
+    }
+    if !options.quiet {
+        let run = Run { command: "convert", subjects, fails_from: Severity::Error, exit: worst as u8 };
+        print_document(&run, format)?;
+    }
+    Ok(worst)
+}
+
+/// Makes the output once more, aside, and compares.
+fn outdated(job: &Job, plan: &Plan) -> Result<Report, Failure> {
+    let mut report = Report::default();
+    if !job.output.exists() {
+        let message =
+            format!("expected what {} becomes, found no such file; convert it", job.input.display());
+        report.add(Code::Outdated, "", message);
+        return Ok(report);
+    }
+    let mut old = files::asset(&job.output)?;
+    plan.fits_glb().map_err(|error| Failure::refused(error.to_string()))?;
+    let aside = tempfile::tempfile().map_err(|error| writing(job, error))?;
+    let buffered = BufWriter::with_capacity(WRITE_BUFFER, &aside);
+    plan.write_glb(buffered, |_| {}).map_err(|error| writing(job, error))?;
+    let fresh = aside.try_clone().map_err(|error| writing(job, error))?;
+    let compared = Asset::open(Box::new(fresh), Box::new(Beside::the(&job.output)))
+        .and_then(|mut new| diff::stale(&mut old, &mut new));
+    if let Some(Stale { pointer, message }) =
+        compared.map_err(|error| files::cannot_read(&job.output, &error))?
+    {
+        let advice = format!("{message}; convert {} again", job.input.display());
+        report.add(Code::Outdated, pointer, advice);
+    }
+    Ok(report)
+}
+
+fn say_report(file: &str, report: &Report, format: Format) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    match format {
+        Format::Text if report.worst().is_none() => writeln!(out, "{file}: up to date"),
+        Format::Text => write!(out, "{}", report.text(file)),
+        Format::Json => {
+            let mut value = report.to_json();
+            value["file"] = file.into();
+            writeln!(out, "{value}")
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Converts, and says so if that fails.
@@ -155,6 +233,15 @@ fn check_ending(output: &Path) -> Result<(), Failure> {
 
 fn convert(job: &Job, options: &Convert) -> Result<(), Failure> {
     let started = Instant::now();
+    planned(job, options, |name, ground, plan| write(job, options, started, name, ground, plan))
+}
+
+/// Reads the inputs and plans the output.
+fn planned<T>(
+    job: &Job,
+    options: &Convert,
+    work: impl FnOnce(&str, &Ground, &Plan) -> Result<T, Failure>,
+) -> Result<T, Failure> {
     let name = display_name(&job.input);
     let paths: Vec<&Path> = std::iter::once(&job.input).chain(&options.path).map(PathBuf::as_path).collect();
     let mut gathered = files::gather(&paths, options.order.order, options.frame)?;
@@ -178,8 +265,18 @@ fn convert(job: &Job, options: &Convert) -> Result<(), Failure> {
     let along = options.along.is_asked() || options.scenery.needs_path();
     let ground = gathered.ground(&name, along, shape, &recipe.schemes)?;
     let plan = Plan::new(&ground, &name, &recipe).map_err(|error| Failure::refused(error.to_string()))?;
-    let mut written =
-        if is_gltf(&job.output) { gltf(job, &plan, options)? } else { glb(job, &plan, options)? };
+    work(&name, &ground, &plan)
+}
+
+fn write(
+    job: &Job,
+    options: &Convert,
+    started: Instant,
+    name: &str,
+    ground: &Ground,
+    plan: &Plan,
+) -> Result<(), Failure> {
+    let mut written = if is_gltf(&job.output) { gltf(job, plan, options)? } else { glb(job, plan, options)? };
     let thumbnail = draw(job, options, &mut written)?;
     let Written { outputs, facts, bytes, bin_name, .. } = written;
     let mut warnings = plan.warnings().to_vec();
@@ -190,7 +287,7 @@ fn convert(job: &Job, options: &Convert) -> Result<(), Failure> {
     if is_gltf(&job.output) {
         remove_old_bins(&job.output, &bin_name);
     }
-    let summary = Summary::new(&name, &job.output, &ground, &facts, bytes, &warnings, started.elapsed());
+    let summary = Summary::new(name, &job.output, ground, &facts, bytes, &warnings, started.elapsed());
     summary.print(options.json, options.quiet)
 }
 

@@ -18,6 +18,7 @@ mod measure;
 mod reel;
 mod report;
 mod rig;
+mod stale;
 mod sweep;
 #[cfg(test)]
 mod tests;
@@ -25,6 +26,7 @@ mod tests;
 pub use matching::By;
 pub use measure::Measure;
 pub use report::{Found, Limits};
+pub use stale::{Stale, stale};
 pub use sweep::Which;
 
 use crate::asset::play::{Channel, Clip, Property};

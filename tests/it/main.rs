@@ -24,6 +24,8 @@ mod help;
 #[cfg(feature = "cli")]
 mod inspect;
 #[cfg(feature = "cli")]
+mod outdated;
+#[cfg(feature = "cli")]
 mod paths;
 #[cfg(feature = "cli")]
 mod refused;
