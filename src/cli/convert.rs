@@ -131,7 +131,7 @@ fn convert(job: &Job, options: &Convert) -> Result<(), Failure> {
         fps: options.fps,
         key_times: !options.no_key_times,
     };
-    let shape = options.along.shape(options.ends, options.time_scale, options.frame);
+    let shape = options.along.shape(options.ends, options.tangents.tcb(), options.time_scale, options.frame);
     let ground = gathered.ground(&name, &options.along, shape, &recipe.schemes)?;
     let plan = Plan::new(&ground, &name, &recipe).map_err(|error| Failure::refused(error.to_string()))?;
     let mut written =

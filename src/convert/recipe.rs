@@ -14,6 +14,12 @@ struct Recipe<'a> {
     dat2glb: &'a str,
     scheme: &'a str,
     ends: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tension: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    continuity: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bias: Option<f64>,
     fps: String,
     key_times: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -76,10 +82,14 @@ pub(super) fn recipe(
     let keyframes = inputs.keyframes.as_ref();
     let hashes = keyframes.map(|k| &k.hash).into_iter().chain(inputs.path.as_ref().map(|p| &p.hash));
     let shape = ground.shape();
+    let said = |x: f64| (scheme.has_tcb() && x != 0.0).then_some(x);
     let recipe = Recipe {
         dat2glb: env!("CARGO_PKG_VERSION"),
         scheme: scheme.name(),
         ends: shape.ends.name(),
+        tension: said(shape.tcb.tension),
+        continuity: said(shape.tcb.continuity),
+        bias: said(shape.tcb.bias),
         fps: options.fps.to_string(),
         key_times: options.key_times,
         quat_order: keyframes.map(|keyframes| keyframes.order.name()),

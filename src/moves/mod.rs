@@ -9,7 +9,7 @@ mod way;
 
 pub use euler::euler_keys;
 
-use crate::curve::{Ends, Motion, NotClosed, Scheme};
+use crate::curve::{Ends, Motion, NotClosed, Scheme, Tcb};
 use crate::math::Quat;
 use crate::orient::{Axis, Frame, Level, ParallelAxes};
 use crate::path::{self, Ease, PathEnds, Timing};
@@ -66,6 +66,8 @@ impl Orient {
 pub struct Shape {
     /// What rotations do at their ends.
     pub ends: Ends,
+    /// Tension, continuity and bias of the scheme that has them.
+    pub tcb: Tcb,
     /// What the path does at its ends.
     pub path_ends: PathEnds,
     /// How time is shared out along the path.
@@ -95,6 +97,7 @@ impl Default for Shape {
     fn default() -> Shape {
         Shape {
             ends: Ends::default(),
+            tcb: Tcb::default(),
             path_ends: PathEnds::default(),
             timing: None,
             ease: Ease::None,
@@ -159,7 +162,7 @@ impl Move<'_> {
     /// The same as what samplers take, if it is a rotation.
     pub fn rotation(&self) -> Option<Rotation<'_>> {
         match self {
-            Move::Keys(motion) => Some(Rotation::Motion(*motion)),
+            Move::Keys(motion) => Some(Rotation::Motion(motion.clone())),
             Move::Attitude(at) => Some(Rotation::Function(at)),
             Move::Travel(_) => None,
         }
@@ -190,7 +193,7 @@ impl<'a> Ground<'a> {
     /// Puts inputs on one clock, for some schemes; there is at least one input.
     pub fn new(inputs: &'a Inputs, shape: Shape, schemes: &[Scheme]) -> Result<Ground<'a>, Error> {
         let clip = inputs.keyframes.as_ref().map(|keyframes| &keyframes.clip);
-        if let Some(clip) = clip.filter(|_| schemes.iter().any(|&scheme| scheme != Scheme::Slerp)) {
+        if let Some(clip) = clip.filter(|_| schemes.iter().any(|scheme| scheme.has_ends())) {
             shape.ends.accept(clip)?;
         }
         let timed = inputs.path.as_ref().filter(|path| path.times.is_some());
@@ -263,7 +266,8 @@ impl<'a> Ground<'a> {
     /// What moves, by a scheme, in the order in which files hold it.
     pub fn moves(&self, scheme: Scheme) -> Vec<(Mover, Move<'_>)> {
         let tracks = self.inputs.keyframes.iter().flat_map(|keyframes| &keyframes.clip.tracks).enumerate();
-        let motion = |keys| Move::Keys(Motion::new(&self.key_times, keys, scheme, self.shape.ends));
+        let Shape { ends, tcb, .. } = self.shape;
+        let motion = |keys| Move::Keys(Motion::new(&self.key_times, keys, scheme, ends).with_tcb(tcb));
         let mut moves: Vec<(Mover, Move)> = tracks.map(|(i, keys)| (Mover::Track(i), motion(keys))).collect();
         if let Some(way) = &self.way {
             moves.extend(way.attitude(self.orient(), &self.shape, scheme).map(|turn| (Mover::Root, turn)));

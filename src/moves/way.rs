@@ -76,7 +76,8 @@ impl Way {
             Orient::Keyed => {
                 // The path's own ends close it; its keys need not be equal there.
                 let ends = if shape.ends == Ends::Closed { Ends::Natural } else { shape.ends };
-                Some(Move::Keys(Motion::new(&self.keyed.0, &self.keyed.1, scheme, ends)))
+                let motion = Motion::new(&self.keyed.0, &self.keyed.1, scheme, ends);
+                Some(Move::Keys(motion.with_tcb(shape.tcb)))
             }
             Orient::Tangent => Some(self.facing(Tangent::new(&self.path), shape.level)),
             Orient::Upright => Some(self.facing(Upright::new(&self.path, shape.bank), shape.level)),

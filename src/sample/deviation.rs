@@ -315,7 +315,7 @@ mod tests {
             let timeline = Timeline::new(motion.times(), motion.ramp(), fps_parsed, key_times).unwrap();
             let times: Vec<f32> = (0..timeline.chunks()).flat_map(|i| timeline.chunk(i).1).collect();
             let mut samples = Vec::new();
-            let facts = rotations(&[Rotation::Motion(motion)], &timeline, |chunk| {
+            let facts = rotations(&[Rotation::Motion(motion.clone())], &timeline, |chunk| {
                 samples.extend_from_slice(chunk);
                 Ok::<(), ()>(())
             });
