@@ -102,7 +102,7 @@ fn row(scheme: Scheme, even: bool, tolerance: f64) {
     for seed in 1..=4 {
         let (times, keys) = clip(even, seed);
         let motion = Motion::new(&times, &keys, scheme, Ends::Natural);
-        let curve = Turning::new(motion);
+        let curve = Turning::new(motion.clone());
         let options = Options::new(tolerance);
         let on_curve = reduce::rotation(&curve, &Options { on_curve: true, ..options }).expect("usable");
         let start = Instant::now();

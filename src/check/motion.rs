@@ -8,7 +8,7 @@ use super::{Code, Report};
 use crate::asset::play::Clip;
 use crate::asset::{self, Asset};
 use crate::clip::Body;
-use crate::curve::{Ends, Scheme};
+use crate::curve::{Ends, Scheme, Tcb};
 use crate::math::Quat;
 use crate::moves::{self, Copies, Ground, Inputs, Move, Mover, Orient, Shape, Stream};
 use crate::orient::{Axis, Frame, Level};
@@ -88,6 +88,9 @@ const MARGIN: f64 = 1e-3;
 struct Recipe {
     scheme: String,
     ends: String,
+    tension: f64,
+    continuity: f64,
+    bias: f64,
     quat_order: Option<String>,
     time_scale: Option<f64>,
     orient: Option<String>,
@@ -115,6 +118,9 @@ impl Default for Recipe {
         Recipe {
             scheme: String::new(),
             ends: "natural".into(),
+            tension: 0.0,
+            continuity: 0.0,
+            bias: 0.0,
             quat_order: None,
             time_scale: None,
             orient: None,
@@ -167,6 +173,7 @@ impl Recipe {
         }
         Ok(Shape {
             ends: known(&self.ends, Ends::from_name)?,
+            tcb: Tcb { tension: self.tension, continuity: self.continuity, bias: self.bias },
             path_ends: said(&self.path_ends, PathEnds::from_name)?.unwrap_or_default(),
             timing: said(&self.timing, Timing::from_name)?,
             ease: said(&self.ease, Ease::from_name)?.unwrap_or_default(),

@@ -4,7 +4,7 @@ use super::camera::CameraSpec;
 use clap::builder::{PossibleValue, TypedValueParser, ValueParser};
 use clap::{Args, Parser, Subcommand, ValueHint};
 use dat2glb::convert::{Fewest, Sampling};
-use dat2glb::curve::{Ends, Scheme};
+use dat2glb::curve::{Ends, Scheme, Tcb};
 use dat2glb::moves::{Copies, Orient, Shape};
 use dat2glb::orient::{Axis, Frame, Level};
 use dat2glb::path::{Ease, PathEnds, Timing};
@@ -82,6 +82,8 @@ pub(crate) struct Convert {
     /// What the motion does at its ends
     #[arg(long, default_value = "natural", value_parser = ends(), hide_possible_values = false)]
     pub(crate) ends: Ends,
+    #[command(flatten)]
+    pub(crate) tangents: Tangents,
     /// Samples per second: 60, 23.976, 30000/1001
     #[arg(long, default_value = "60")]
     fps: Fps,
@@ -346,6 +348,8 @@ pub(crate) struct Sample {
     /// What rotations do at their ends
     #[arg(long, default_value = "natural", value_parser = ends())]
     pub(crate) ends: Ends,
+    #[command(flatten)]
+    pub(crate) tangents: Tangents,
     /// Rows per second; the last time has one too
     #[arg(long, default_value = "25")]
     pub(crate) fps: Fps,
@@ -397,6 +401,48 @@ pub(crate) enum Kind {
     Camera,
     /// Roll, pitch and yaw in degrees
     Euler,
+}
+
+/// What shapes the tangents of `kochanek-bartels`.
+#[derive(Args, Debug)]
+pub(crate) struct Tangents {
+    /// kochanek-bartels: 1 stops at every key, -1 runs through it twice as fast
+    #[arg(
+        long,
+        value_name = "T",
+        default_value = "0",
+        allow_negative_numbers = true,
+        hide_default_value = true,
+        value_parser = one_at_most
+    )]
+    tension: f64,
+    /// kochanek-bartels: a corner at every key, below 0 as straight lines make it, above 0
+    /// the other way
+    #[arg(
+        long,
+        value_name = "C",
+        default_value = "0",
+        allow_negative_numbers = true,
+        hide_default_value = true,
+        value_parser = one_at_most
+    )]
+    continuity: f64,
+    /// kochanek-bartels: 1 leaves a key as it came, -1 comes as it will leave
+    #[arg(
+        long,
+        value_name = "B",
+        default_value = "0",
+        allow_negative_numbers = true,
+        hide_default_value = true,
+        value_parser = one_at_most
+    )]
+    bias: f64,
+}
+
+impl Tangents {
+    pub(crate) fn tcb(&self) -> Tcb {
+        Tcb { tension: self.tension, continuity: self.continuity, bias: self.bias }
+    }
 }
 
 #[derive(Args, Debug)]
@@ -551,9 +597,10 @@ pub(crate) struct Along {
 
 impl Along {
     /// All that shapes the motion.
-    pub(crate) fn shape(&self, ends: Ends, time_scale: f64, frame: Option<Frame>) -> Shape {
+    pub(crate) fn shape(&self, ends: Ends, tcb: Tcb, time_scale: f64, frame: Option<Frame>) -> Shape {
         Shape {
             ends,
+            tcb,
             path_ends: self.path_ends,
             timing: self.timing,
             ease: self.ease,
@@ -572,7 +619,7 @@ impl Along {
     /// Whether anything is asked for that only a path can have.
     pub(crate) fn is_asked(&self) -> bool {
         let plain = Shape::default();
-        self.shape(plain.ends, plain.time_scale, plain.frame) != plain
+        self.shape(plain.ends, plain.tcb, plain.time_scale, plain.frame) != plain
     }
 }
 
@@ -594,6 +641,11 @@ fn frame() -> ValueParser {
 fn finite(text: &str) -> Result<f64, String> {
     let value: Option<f64> = text.parse().ok();
     value.filter(|value| value.is_finite()).ok_or_else(|| "expected a number".to_owned())
+}
+
+fn one_at_most(text: &str) -> Result<f64, String> {
+    let value = finite(text)?;
+    if value.abs() <= 1.0 { Ok(value) } else { Err("expected a number from -1 to 1".to_owned()) }
 }
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -647,6 +699,7 @@ fn ends() -> ValueParser {
         ("closed", "the last key runs into the first"),
         ("periodic", "another word for closed"),
         ("hold", "each end segment rests at its first key, then jumps"),
+        ("chord", "starts and stops at the mean velocity of its first and last step"),
     ];
     named(Ends::from_name, values.to_vec())
 }
@@ -763,6 +816,9 @@ mod tests {
         assert_eq!(schemes("all"), Scheme::ALL);
         assert_eq!(schemes("bessel,all")[0], Scheme::Bessel);
         assert_eq!(convert("dat2glb a.dat --ends periodic").ends, Ends::Closed);
+        let tcb = convert("dat2glb a.dat --tension -1 --bias 0.5").tangents.tcb();
+        assert_eq!(tcb, Tcb { tension: -1.0, continuity: 0.0, bias: 0.5 });
+        assert!(parsed("dat2glb a.dat --continuity 1.1").is_err());
         assert!(parsed("dat2glb a.dat --scheme spline").is_err());
     }
 

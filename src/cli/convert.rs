@@ -260,7 +260,7 @@ fn planned<T>(
     };
     let shape = Shape {
         copies: options.scenery.copies(),
-        ..options.along.shape(options.ends, options.time_scale, options.frame)
+        ..options.along.shape(options.ends, options.tangents.tcb(), options.time_scale, options.frame)
     };
     let along = options.along.is_asked() || options.scenery.needs_path();
     let ground = gathered.ground(&name, along, shape, &recipe.schemes)?;

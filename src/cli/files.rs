@@ -3,7 +3,7 @@
 use super::camera::CameraSpec;
 use super::exit::Failure;
 use dat2glb::asset::{self, Asset, Resolve, Source};
-use dat2glb::curve::Scheme;
+use dat2glb::curve::{Scheme, Tcb};
 use dat2glb::moves::{self, Ground, Inputs, Shape, rotation_keys};
 use dat2glb::orient::Frame;
 use dat2glb::path;
@@ -89,6 +89,10 @@ impl Gathered {
     ) -> Result<Ground<'_>, Failure> {
         if self.inputs.path.is_none() && along {
             let problem = "options of a path are given, but no path: say --path PATH.dat";
+            return Err(Failure::usage(format!("{name}: {problem}")));
+        }
+        if shape.tcb != Tcb::default() && !schemes.iter().any(|scheme| scheme.has_tcb()) {
+            let problem = "--tension, --continuity and --bias shape --scheme kochanek-bartels only";
             return Err(Failure::usage(format!("{name}: {problem}")));
         }
         Ground::new(&self.inputs, shape, schemes).map_err(|error| {

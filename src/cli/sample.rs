@@ -14,7 +14,7 @@ pub(super) fn run(options: &Sample) -> Result<Exit, Failure> {
     let paths: Vec<&Path> =
         std::iter::once(&options.input).chain(&options.path).map(PathBuf::as_path).collect();
     let gathered = files::gather(&paths, options.order.order, options.frame)?;
-    let shape = options.along.shape(options.ends, options.time_scale, options.frame);
+    let shape = options.along.shape(options.ends, options.tangents.tcb(), options.time_scale, options.frame);
     let ground = gathered.ground(&name, options.along.is_asked(), shape, &[options.scheme])?;
     let table = Table::new(&ground, options.scheme, options.notation, gathered.frame.unwrap_or(Frame::Gltf));
     let output = match &options.output {

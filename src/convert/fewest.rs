@@ -180,7 +180,7 @@ fn chosen(
         Chosen { times: keys.times, values: Values::Rotations(keys.values), facts: keys.facts }
     };
     let chosen = match a_move {
-        Move::Keys(motion) => reduce::rotation(&Turning::new(*motion), &options).map(rotations),
+        Move::Keys(motion) => reduce::rotation(&Turning::new(motion.clone()), &options).map(rotations),
         Move::Attitude(Turn { at, knots, ramps }) => {
             reduce::rotation(&Attitude::new(at, (0.0, end), knots, ramps), &options).map(rotations)
         }

@@ -425,13 +425,13 @@ fn rotations_twice(
     let mut facts = Vec::new();
     for track in tracks {
         let (mut left, mut last) = (timeline.len() - 1, None);
-        sample::rotations(&[*track], timeline, writing, |rotations| {
+        sample::rotations(std::slice::from_ref(track), timeline, writing, |rotations| {
             let rotations = all_but_last(rotations, &mut left);
             last = rotations.last().copied().or(last);
             append(rotations)
         })?;
         let mut turn = None;
-        facts.extend(sample::rotations(&[*track], timeline, writing, |rotations| {
+        facts.extend(sample::rotations(std::slice::from_ref(track), timeline, writing, |rotations| {
             let follows = |first: [f32; 4]| {
                 let before = last.map_or(first, |before| before).map(f64::from);
                 Quat::from_xyzw(before).dot(Quat::from_xyzw(first.map(f64::from))) >= 0.0

@@ -16,6 +16,12 @@ struct Recipe<'a> {
     scheme: &'a str,
     ends: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
+    tension: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    continuity: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bias: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     fps: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     key_times: Option<bool>,
@@ -117,10 +123,14 @@ pub(super) fn recipe(ground: &Ground, options: &Options, scheme: Scheme, facts: 
         Some(all).filter(|_| options.writing.bound)
     };
     let measured = facts.tracks.iter().any(|track| track.measured.is_some());
+    let said = |x: f64| (scheme.has_tcb() && x != 0.0).then_some(x);
     let recipe = Recipe {
         dat2glb: env!("CARGO_PKG_VERSION"),
         scheme: scheme.name(),
         ends: shape.ends.name(),
+        tension: said(shape.tcb.tension),
+        continuity: said(shape.tcb.continuity),
+        bias: said(shape.tcb.bias),
         fps: rate.map(|(fps, _)| fps.to_string()),
         key_times: rate.map(|(_, key_times)| key_times),
         fewest,

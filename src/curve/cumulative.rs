@@ -83,23 +83,37 @@ pub(super) fn log_of_product(product: Quat, sum: impl FnOnce() -> Vec3) -> Vec3 
 /// neighbours: `handle(corner, h)` is the step from a key to the next control rotation
 /// in a segment of h seconds, which by symmetry is also the step that leads to a key.
 pub(super) fn from_handles(span: &Span, handle: impl Fn(&Corner, f64) -> Vec3) -> CumulativeCubic {
-    let Span { start, end, h, .. } = *span;
+    from_both_handles(span, &handle, &handle)
+}
+
+/// [`from_handles`] with one rule for the step that leaves a key and one for the step that
+/// leads to it.
+pub(super) fn from_both_handles(
+    span: &Span,
+    leaving: impl Fn(&Corner, f64) -> Vec3,
+    arriving: impl Fn(&Corner, f64) -> Vec3,
+) -> CumulativeCubic {
+    let Span { start, end, h, end_rule, .. } = *span;
+    let inner = |key: Quat| Neighbour { key, h, is_end: false };
     let first =
-        span.before.map(|before| handle(&Corner { before, key: start, after: Neighbour { key: end, h } }, h));
+        span.before_or_repeated().map(|before| leaving(&Corner { before, key: start, after: inner(end) }, h));
     let last =
-        span.after.map(|after| handle(&Corner { before: Neighbour { key: start, h }, key: end, after }, h));
+        span.after_or_repeated().map(|after| arriving(&Corner { before: inner(start), key: end, after }, h));
     let chord = start.conjugate() * end;
-    match (first, last, span.end_rule) {
-        (Some(first), Some(last), _) => CumulativeCubic::between(start, end, first, last),
-        (None, None, _) => CumulativeCubic::new(start, [chord.log() * (1.0 / 3.0); 3]),
-        (None, Some(last), End::Rest) => CumulativeCubic::between(start, end, Vec3::ZERO, last),
-        (Some(first), None, End::Rest) => CumulativeCubic::between(start, end, first, Vec3::ZERO),
+    // Where a neighbour is missing, the velocity may be given.
+    let given = match end_rule {
+        End::Chord(share) => Some(chord.log() * (share / 3.0)),
+        End::Natural | End::Repeat => None,
+    };
+    match (first.or(given), last.or(given)) {
+        (Some(first), Some(last)) => CumulativeCubic::between(start, end, first, last),
+        (None, None) => CumulativeCubic::new(start, [chord.log() * (1.0 / 3.0); 3]),
         // The missing control rotation halves the way to the other inner one.
-        (None, Some(last), End::Natural) => {
+        (None, Some(last)) => {
             let half = (chord * Quat::exp(-last)).log() * 0.5;
             CumulativeCubic::new(start, [half, half, last])
         }
-        (Some(first), None, End::Natural) => {
+        (Some(first), None) => {
             let half = (Quat::exp(-first) * chord).log() * 0.5;
             CumulativeCubic::new(start, [first, half, half])
         }

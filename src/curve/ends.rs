@@ -19,6 +19,8 @@ pub enum Ends {
     Closed,
     /// Each end segment rests at the value of its own first key.
     Hold,
+    /// Starts and stops at the mean velocity of the first and the last step.
+    Chord,
 }
 
 /// A clip whose ends do not meet, though they were said to.
@@ -37,7 +39,8 @@ pub struct NotClosed {
 
 impl Ends {
     /// Every kind of end, in the order of the documentation.
-    pub const ALL: [Ends; 5] = [Ends::Natural, Ends::Clamped, Ends::Repeat, Ends::Closed, Ends::Hold];
+    pub const ALL: [Ends; 6] =
+        [Ends::Natural, Ends::Clamped, Ends::Repeat, Ends::Closed, Ends::Hold, Ends::Chord];
 
     /// The largest gap between first and last key that `closed` closes, degrees.
     pub const LARGEST_GAP: f64 = 0.2;
@@ -50,6 +53,7 @@ impl Ends {
             Ends::Repeat => "repeat",
             Ends::Closed => "closed",
             Ends::Hold => "hold",
+            Ends::Chord => "chord",
         }
     }
 

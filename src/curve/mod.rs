@@ -8,17 +8,24 @@
 //! A further scheme is a file here, a line in `scheme.rs` and a page in docs/math.
 
 mod arc;
+mod b_spline;
+mod barry_goldman;
 mod bessel;
 mod bessel_overhauser;
 mod catmull_rom;
 mod cumulative;
 mod ends;
+mod kochanek_bartels;
 mod motion;
+mod natural_c2;
+mod nlerp;
 mod rates;
 mod rule;
 mod scheme;
 mod slerp;
 mod squad;
+mod tcb;
+mod track;
 mod warnings;
 
 pub use arc::Arc;
@@ -27,6 +34,7 @@ pub use motion::{Motion, Piece};
 pub use rates::Rates;
 pub use rule::Smoothness;
 pub use scheme::Scheme;
+pub use tcb::Tcb;
 pub use warnings::warnings;
 
 #[cfg(test)]

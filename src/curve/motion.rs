@@ -2,31 +2,31 @@
 
 use super::arc::GreatArc;
 use super::cumulative::CumulativeCubic;
-use super::rule::{End, Neighbour, Span};
 use super::scheme::Segment;
-use super::{Arc, Ends, Rates, Scheme, ramp_start};
-use crate::math::{Quat, Scalar};
+use super::track::Track;
+use super::{Arc, Ends, Rates, Scheme, Tcb, natural_c2, ramp_start};
+use crate::math::{Quat, Scalar, Vec3};
+use std::sync::{Arc as Shared, OnceLock};
 
 /// The motion of one box: its keys, the scheme between them, and the ends; or its control
 /// rotations.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Motion<'a> {
-    times: &'a [f64],
-    /// Keys, or control rotations.
-    keys: &'a [Quat],
-    /// The last key, which closed ends make equal to the first.
-    last: Quat,
+    track: Track<'a>,
     course: Course,
 }
 
 /// What runs through the keys.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 enum Course {
     /// A scheme from key to key.
-    Keys(Scheme, Ends),
+    Scheme(Scheme, Tcb, Option<Solution>),
     /// A cubic a segment, of its first key, its two control rotations and its last key.
     Controls,
 }
+
+/// Velocities at all keys, worked out when they are first needed; clones share them.
+type Solution = Shared<OnceLock<Box<[Vec3]>>>;
 
 /// A stretch of time on which a motion is smooth.
 #[derive(Clone, Copy, Debug)]
@@ -61,7 +61,17 @@ impl Piece {
 
 impl Arc for Piece {
     fn at<S: Scalar>(&self, u: S) -> Quat<S> {
-        match &self.shape {
+        self.shape.at(u)
+    }
+
+    fn rates(&self) -> Rates {
+        self.shape.rates()
+    }
+}
+
+impl Arc for Shape {
+    fn at<S: Scalar>(&self, u: S) -> Quat<S> {
+        match self {
             Shape::Rest(q) => Quat::constant(*q),
             Shape::Ramp(arc) => arc.at(u),
             Shape::Segment(segment) => segment.at(u),
@@ -70,7 +80,7 @@ impl Arc for Piece {
     }
 
     fn rates(&self) -> Rates {
-        match &self.shape {
+        match self {
             Shape::Rest(_) => Rates { speed: 0.0, acceleration: 0.0 },
             Shape::Ramp(arc) => arc.rates(),
             Shape::Segment(segment) => segment.rates(),
@@ -82,12 +92,24 @@ impl Arc for Piece {
 impl<'a> Motion<'a> {
     /// The motion through `keys` at `times`, as a [`crate::clip::Clip`] holds them.
     pub fn new(times: &'a [f64], keys: &'a [Quat], scheme: Scheme, ends: Ends) -> Motion<'a> {
-        // With two keys every scheme is slerp; slerp has no use for neighbours.
-        let scheme = if keys.len() == 2 { Scheme::Slerp } else { scheme };
-        let ends = if scheme == Scheme::Slerp { Ends::Natural } else { ends };
+        // With two keys a scheme has no neighbours to go by, and is slerp.
+        let scheme = if keys.len() == 2 && scheme.has_ends() { Scheme::Slerp } else { scheme };
+        let ends = if scheme.has_ends() { ends } else { Ends::Natural };
         let last = keys[keys.len() - 1];
         let last = if ends == Ends::Closed { keys[0].aligned_to(last) } else { last };
-        Motion { times, keys, last, course: Course::Keys(scheme, ends) }
+        // Held ends show the keys next to them: there a curve that smooths begins and ends.
+        let margin = usize::from(ends == Ends::Hold && !scheme.passes_keys());
+        let solution = scheme.velocities().map(|_| Solution::default());
+        let track = Track { times, keys, last, ends, margin };
+        Motion { track, course: Course::Scheme(scheme, Tcb::default(), solution) }
+    }
+
+    /// The same with tension, continuity and bias for the scheme that has them.
+    pub fn with_tcb(mut self, tcb: Tcb) -> Motion<'a> {
+        if let Course::Scheme(_, of_scheme, _) = &mut self.course {
+            *of_scheme = tcb;
+        }
+        self
     }
 
     /// The motion along control rotations: segment i runs from `times[i]` to
@@ -100,17 +122,19 @@ impl<'a> Motion<'a> {
     /// hemisphere of the one before it, so that every step is the short way.
     /// Source: Kim, Kim and Shin 1995; docs/math/cumulative-bezier.md.
     pub fn through_controls(times: &'a [f64], controls: &'a [Quat]) -> Motion<'a> {
-        Motion { times, keys: controls, last: controls[controls.len() - 1], course: Course::Controls }
+        let last = controls[controls.len() - 1];
+        let track = Track { times, keys: controls, last, ends: Ends::Natural, margin: 0 };
+        Motion { track, course: Course::Controls }
     }
 
     /// Times of the keys, seconds; of control rotations, where segments begin and end.
     pub fn times(&self) -> &'a [f64] {
-        self.times
+        self.track.times
     }
 
     /// Where the ramp of a jump begins, if this motion has one.
     pub fn ramp(&self) -> Option<f64> {
-        self.holds().then(|| ramp_start(self.times[0], self.times[1]))
+        self.holds().then(|| ramp_start(self.track.times[0], self.track.times[1]))
     }
 
     /// The rotation at a time; before the first and after the last key that key's.
@@ -122,107 +146,80 @@ impl<'a> Motion<'a> {
     /// The piece that holds a time: of two that meet there, the later one. From the last
     /// key on the motion rests.
     pub fn piece_at(&self, t: f64) -> Piece {
-        let last = self.times.len() - 2;
-        let end = self.times[last + 1];
+        let times = self.track.times;
+        let last = times.len() - 2;
+        let end = times[last + 1];
         if t >= end {
-            let resting = if self.holds() { self.keys[last] } else { self.last };
-            return Piece { start: end, end: f64::INFINITY, shape: Shape::Rest(resting) };
+            let shape = if self.holds() { Shape::Rest(self.track.keys[last]) } else { self.rest(last) };
+            return Piece { start: end, end: f64::INFINITY, shape };
         }
-        let segment = self.times.partition_point(|&key| key <= t).saturating_sub(1).min(last);
+        let segment = times.partition_point(|&key| key <= t).saturating_sub(1).min(last);
         self.piece(segment, t)
     }
 
     /// The piece of segment `i`, from key i to key i + 1, that holds the time t.
     pub fn piece(&self, i: usize, t: f64) -> Piece {
-        let (start, end) = (self.times[i], self.times[i + 1]);
-        let segment = |scheme: Scheme| Shape::Segment(scheme.segment(&self.span(i)));
-        let scheme = match self.course {
-            Course::Controls => return Piece { start, end, shape: Shape::Cubic(self.cubic(i)) },
-            Course::Keys(scheme, Ends::Hold) => scheme,
-            Course::Keys(scheme, _) => return Piece { start, end, shape: segment(scheme) },
-        };
-        let rest = Shape::Rest(self.key(i));
+        let (start, end) = (self.track.times[i], self.track.times[i + 1]);
         match self.ramp() {
-            Some(ramp) if i == 0 && t < ramp => Piece { start, end: ramp, shape: rest },
+            Some(ramp) if i == 0 && t < ramp => {
+                Piece { start, end: ramp, shape: Shape::Rest(self.track.key(0)) }
+            }
             Some(ramp) if i == 0 => {
-                let arc = GreatArc::new(self.key(0), self.key(1));
+                let arc = GreatArc::new(self.track.key(0), self.track.key(1));
                 Piece { start: ramp, end, shape: Shape::Ramp(arc) }
             }
-            _ if i + 2 == self.keys.len() => Piece { start, end, shape: rest },
-            _ => Piece { start, end, shape: segment(scheme) },
+            Some(_) if i + 2 == self.track.times.len() => {
+                Piece { start, end, shape: Shape::Rest(self.track.key(i)) }
+            }
+            _ => Piece { start, end, shape: self.segment(i) },
         }
     }
 
-    fn ends(&self) -> Ends {
-        match self.course {
-            Course::Keys(_, ends) => ends,
-            Course::Controls => Ends::Natural,
+    /// Whether velocities at keys were found where a scheme asks for them.
+    pub(super) fn is_solved(&self) -> bool {
+        match &self.course {
+            Course::Scheme(Scheme::NaturalC2, ..) => natural_c2::is_solved(&self.track),
+            _ => true,
         }
+    }
+
+    /// Whether segment i swings round or jumps where slerps that are blended come apart.
+    pub(super) fn swings(&self, i: usize) -> bool {
+        matches!(self.segment(i), Shape::Segment(Segment::BarryGoldman(pyramid)) if pyramid.swings())
     }
 
     fn holds(&self) -> bool {
-        self.ends() == Ends::Hold
+        self.track.ends == Ends::Hold
+    }
+
+    /// Where the motion rests that has run through its last segment.
+    fn rest(&self, last: usize) -> Shape {
+        match &self.course {
+            Course::Scheme(scheme, ..) if !scheme.passes_keys() => Shape::Rest(self.segment(last).at(1.0)),
+            _ => Shape::Rest(self.track.last),
+        }
+    }
+
+    fn segment(&self, i: usize) -> Shape {
+        match &self.course {
+            Course::Controls => Shape::Cubic(self.cubic(i)),
+            Course::Scheme(scheme, tcb, solution) => {
+                let velocities = self.velocities(*scheme, solution.as_ref(), i);
+                Shape::Segment(scheme.segment(&self.track.span(i, velocities, *tcb)))
+            }
+        }
+    }
+
+    fn velocities(&self, scheme: Scheme, solution: Option<&Solution>, i: usize) -> [Vec3; 2] {
+        let (Some(solution), Some(solve)) = (solution, scheme.velocities()) else { return [Vec3::ZERO; 2] };
+        let solved = solution.get_or_init(|| solve(&self.track));
+        [solved[i], solved[i + 1]]
     }
 
     /// The cubic of control rotations from time i to time i + 1.
     fn cubic(&self, i: usize) -> CumulativeCubic {
-        let controls = &self.keys[3 * i..];
+        let controls = &self.track.keys[3 * i..];
         let step = |k: usize| (controls[k].conjugate() * controls[k + 1]).log();
         CumulativeCubic::new(controls[0], [step(0), step(1), step(2)])
-    }
-
-    /// Key i as the motion passes it.
-    fn key(&self, i: usize) -> Quat {
-        if i + 1 == self.keys.len() { self.last } else { self.keys[i] }
-    }
-
-    /// Segment i, between two keys, and what surrounds it.
-    fn span(&self, i: usize) -> Span {
-        Span {
-            before: self.before(i),
-            start: self.key(i),
-            end: self.key(i + 1),
-            h: self.interval(i),
-            after: self.after(i + 1),
-            end_rule: if self.ends() == Ends::Clamped { End::Rest } else { End::Natural },
-        }
-    }
-
-    /// Time from key i to key i + 1.
-    fn interval(&self, i: usize) -> f64 {
-        self.times[i + 1] - self.times[i]
-    }
-
-    /// The key before key i.
-    fn before(&self, i: usize) -> Option<Neighbour> {
-        if i > 0 {
-            return Some(Neighbour { key: self.key(i - 1), h: self.interval(i - 1) });
-        }
-        let last = self.keys.len() - 1;
-        match self.ends() {
-            Ends::Repeat => Some(Neighbour { key: self.key(0), h: self.interval(0) }),
-            // The sign that makes the last key the first.
-            Ends::Closed => {
-                Some(Neighbour { key: self.with_seam_sign(self.key(last - 1)), h: self.interval(last - 1) })
-            }
-            Ends::Natural | Ends::Clamped | Ends::Hold => None,
-        }
-    }
-
-    /// The key after key i.
-    fn after(&self, i: usize) -> Option<Neighbour> {
-        let last = self.keys.len() - 1;
-        if i < last {
-            return Some(Neighbour { key: self.key(i + 1), h: self.interval(i) });
-        }
-        match self.ends() {
-            Ends::Repeat => Some(Neighbour { key: self.last, h: self.interval(last - 1) }),
-            Ends::Closed => Some(Neighbour { key: self.with_seam_sign(self.key(1)), h: self.interval(0) }),
-            Ends::Natural | Ends::Clamped | Ends::Hold => None,
-        }
-    }
-
-    fn with_seam_sign(&self, q: Quat) -> Quat {
-        if self.key(0).dot(self.last) < 0.0 { -q } else { q }
     }
 }

@@ -1,7 +1,8 @@
 //! What a scheme is asked for, and what it is told.
 
-use super::Arc;
-use crate::math::Quat;
+use super::track::Track;
+use super::{Arc, Tcb};
+use crate::math::{Quat, Vec3};
 
 /// Where a scheme's motion has no jumps in speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,6 +13,8 @@ pub enum Smoothness {
     EvenKeys,
     /// Everywhere.
     Always,
+    /// Everywhere, and its acceleration has none either.
+    Twice,
 }
 
 /// A neighbouring key and the time to it, seconds.
@@ -19,27 +22,59 @@ pub enum Smoothness {
 pub(super) struct Neighbour {
     pub(super) key: Quat,
     pub(super) h: f64,
+    /// Whether no key lies beyond it.
+    pub(super) is_end: bool,
 }
 
 /// What shapes the motion where a neighbour is missing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum End {
     /// It starts and stops without acceleration.
     Natural,
-    /// It starts and stops at rest.
-    Rest,
+    /// The end key counts as its own neighbour.
+    Repeat,
+    /// It starts and stops at this share of the end segment's mean velocity.
+    Chord(f64),
 }
 
 /// One segment with its surroundings: two keys h seconds apart, and their neighbours.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Span {
+    /// The key before; none at an end.
     pub(super) before: Option<Neighbour>,
     pub(super) start: Quat,
     pub(super) end: Quat,
     pub(super) h: f64,
+    /// The key after; none at an end.
     pub(super) after: Option<Neighbour>,
     pub(super) end_rule: End,
+    /// Lengths of this segment, in the middle, and of two on either side, seconds; what
+    /// lies beyond an end mirrors what lies before it.
+    pub(super) intervals: [f64; 5],
+    /// Half the angular velocities at both keys, in the key's own frame, per second: of
+    /// schemes that work them out for a whole track, else zero.
+    pub(super) velocities: [Vec3; 2],
+    pub(super) tcb: Tcb,
 }
+
+impl Span {
+    /// The key before; where the end key counts twice, that.
+    pub(super) fn before_or_repeated(&self) -> Option<Neighbour> {
+        self.before.or_else(|| self.repeated(self.start))
+    }
+
+    /// The key after; where the end key counts twice, that.
+    pub(super) fn after_or_repeated(&self) -> Option<Neighbour> {
+        self.after.or_else(|| self.repeated(self.end))
+    }
+
+    fn repeated(&self, key: Quat) -> Option<Neighbour> {
+        (self.end_rule == End::Repeat).then_some(Neighbour { key, h: self.h, is_end: true })
+    }
+}
+
+/// Half the angular velocities at all keys of a track, in the key's own frame, per second.
+pub(super) type Velocities = fn(&Track) -> Box<[Vec3]>;
 
 /// A scheme: how the curve between two keys follows from them and their neighbours.
 pub(super) trait Rule {
@@ -48,6 +83,12 @@ pub(super) trait Rule {
     /// In a line, for the help text.
     const SUMMARY: &'static str;
     const SMOOTHNESS: Smoothness;
+    /// Whether the curve meets every key.
+    const PASSES_KEYS: bool = true;
+    /// Whether anything but its two keys shapes a segment: else ends change nothing.
+    const HAS_ENDS: bool = true;
+    /// How velocities at keys follow from the whole track, if they do.
+    const VELOCITIES: Option<Velocities> = None;
     type Arc: Arc + Copy;
     fn arc(span: &Span) -> Self::Arc;
 }

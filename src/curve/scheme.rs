@@ -1,7 +1,10 @@
 //! The list of schemes.
 
-use super::rule::{Rule, Smoothness, Span};
-use super::{Arc, Rates, bessel, bessel_overhauser, catmull_rom, slerp, squad};
+use super::rule::{Rule, Smoothness, Span, Velocities};
+use super::{
+    Arc, Rates, b_spline, barry_goldman, bessel, bessel_overhauser, catmull_rom, kochanek_bartels,
+    natural_c2, nlerp, slerp, squad,
+};
 use crate::math::{Quat, Scalar};
 
 macro_rules! schemes {
@@ -34,6 +37,21 @@ macro_rules! schemes {
                 match self { $(Scheme::$name => <$rule as Rule>::SMOOTHNESS,)* }
             }
 
+            /// Whether the motion meets every key: else it smooths.
+            pub fn passes_keys(self) -> bool {
+                match self { $(Scheme::$name => <$rule as Rule>::PASSES_KEYS,)* }
+            }
+
+            /// Whether more than a segment's own two keys shape it: else ends and neighbours
+            /// change nothing.
+            pub fn has_ends(self) -> bool {
+                match self { $(Scheme::$name => <$rule as Rule>::HAS_ENDS,)* }
+            }
+
+            pub(super) fn velocities(self) -> Option<Velocities> {
+                match self { $(Scheme::$name => <$rule as Rule>::VELOCITIES,)* }
+            }
+
             pub(super) fn segment(self, span: &Span) -> Segment {
                 match self { $(Scheme::$name => Segment::$name(<$rule as Rule>::arc(span)),)* }
             }
@@ -57,9 +75,19 @@ schemes! {
     CatmullRom = catmull_rom::CatmullRom,
     BesselOverhauser = bessel_overhauser::BesselOverhauser,
     Bessel = bessel::Bessel,
+    KochanekBartels = kochanek_bartels::KochanekBartels,
+    BarryGoldman = barry_goldman::BarryGoldman,
+    NaturalC2 = natural_c2::NaturalC2,
+    BSpline = b_spline::BSpline,
+    Nlerp = nlerp::Nlerp,
 }
 
 impl Scheme {
+    /// Whether tension, continuity and bias shape it.
+    pub fn has_tcb(self) -> bool {
+        self == Scheme::KochanekBartels
+    }
+
     /// The scheme of a name, if there is one.
     pub fn from_name(name: &str) -> Option<Scheme> {
         Scheme::ALL.iter().copied().find(|scheme| scheme.name() == name)

@@ -10,6 +10,7 @@ impl Rule for Slerp {
     const NAME: &'static str = "slerp";
     const SUMMARY: &'static str = "constant speed from key to key, a corner at each";
     const SMOOTHNESS: Smoothness = Smoothness::Corners;
+    const HAS_ENDS: bool = false;
     type Arc = GreatArc;
 
     fn arc(span: &Span) -> GreatArc {

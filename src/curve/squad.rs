@@ -62,11 +62,12 @@ impl Arc for SquadArc {
 /// The control rotations a₁ and a₂ of a span.
 fn controls(span: &Span) -> (Quat, Quat) {
     let Span { start, end, .. } = *span;
-    let first = span.before.map(|before| control(before, start, end));
-    let last = span.after.map(|after| control(after, end, start));
+    let first = span.before_or_repeated().map(|before| control(before, start, end));
+    let last = span.after_or_repeated().map(|after| control(after, end, start));
+    // The velocity at a key is the step's and twice the logarithm of what leads to the control.
     let outer = |key: Quat, other: Quat, inner: Quat| match span.end_rule {
-        End::Rest => key * Quat::exp((key.conjugate() * other).log() * -0.5),
-        End::Natural => key * Quat::exp((other.conjugate() * inner).log() * 0.5),
+        End::Chord(share) => key * Quat::exp((key.conjugate() * other).log() * (0.5 * (share - 1.0))),
+        End::Natural | End::Repeat => key * Quat::exp((other.conjugate() * inner).log() * 0.5),
     };
     match (first, last) {
         (Some(a1), Some(a2)) => (a1, a2),

@@ -1,7 +1,7 @@
 //! What a user should know about a scheme's way with these very keys.
 
 use super::bessel_overhauser::largest_power;
-use super::{Ends, Scheme, Smoothness};
+use super::{Ends, Motion, Scheme, Smoothness};
 use crate::clip::Warning;
 use crate::math::Quat;
 use std::f64::consts::PI;
@@ -25,11 +25,19 @@ pub fn warnings(
     scheme: Scheme,
     ends: Ends,
 ) -> Vec<Warning> {
-    if times.len() == 2 || scheme == Scheme::Slerp {
-        return Vec::new(); // slerp, whatever was asked for
+    if times.len() == 2 || !scheme.has_ends() {
+        return Vec::new(); // neighbours and ends change nothing
     }
     let keys = Keys { times, tracks, place };
-    [uneven(&keys, scheme, ends), wrapping(&keys, scheme), held(&keys, ends)].into_iter().flatten().collect()
+    let found = [
+        uneven(&keys, scheme, ends),
+        wrapping(&keys, scheme),
+        swinging(&keys, scheme, ends),
+        jumping(&keys, scheme, ends),
+        smoothed(&keys, scheme, ends),
+        held(&keys, ends),
+    ];
+    found.into_iter().flatten().collect()
 }
 
 fn uneven<T>(keys: &Keys<T>, scheme: Scheme, ends: Ends) -> Option<Warning> {
@@ -66,15 +74,77 @@ fn wrapping<T: AsRef<[Quat]>>(keys: &Keys<T>, scheme: Scheme) -> Option<Warning>
     };
     let inner = 1..times.len() - 1;
     let wrapping: Vec<usize> = inner.filter(|&i| keys.tracks.iter().any(|track| wraps(track, i))).collect();
-    let named: Vec<String> = wrapping.iter().take(3).map(|&i| (keys.place)(i)).collect();
-    let more = if wrapping.len() > 3 { format!(" and {} more", wrapping.len() - 3) } else { String::new() };
     (!wrapping.is_empty()).then(|| {
         let message = format!(
-            "bessel-overhauser may swing the wrong way at {}{more}: steps this large between keys this \
-             unevenly spaced exceed half a turn; --scheme bessel does not",
-            named.join(", ")
+            "bessel-overhauser may swing the wrong way at {}: steps this large between keys this unevenly spaced \
+             exceed half a turn; --scheme bessel does not",
+            places(keys, &wrapping)
         );
         Warning::new("POWER_WRAPS", message)
+    })
+}
+
+/// Segments in which slerps that `barry-goldman` blends come nearly 360° apart.
+fn swinging<T: AsRef<[Quat]>>(keys: &Keys<T>, scheme: Scheme, ends: Ends) -> Option<Warning> {
+    if scheme != Scheme::BarryGoldman {
+        return None;
+    }
+    let motions: Vec<Motion> =
+        keys.tracks.iter().map(|track| Motion::new(keys.times, track.as_ref(), scheme, ends)).collect();
+    let segments = 0..keys.times.len() - 1;
+    let swinging: Vec<usize> = segments.filter(|&i| motions.iter().any(|motion| motion.swings(i))).collect();
+    (!swinging.is_empty()).then(|| {
+        let message = format!(
+            "barry-goldman swings round or jumps after {}: for steps this large between keys this unevenly spaced \
+             what it blends comes a full turn apart; --scheme bessel does not",
+            places(keys, &swinging)
+        );
+        Warning::new("POWER_WRAPS", message)
+    })
+}
+
+/// The places of the first three keys.
+fn places<T>(keys: &Keys<T>, found: &[usize]) -> String {
+    let named: Vec<String> = found.iter().take(3).map(|&i| (keys.place)(i)).collect();
+    let more = if found.len() > 3 { format!(" and {} more", found.len() - 3) } else { String::new() };
+    named.join(", ") + &more
+}
+
+/// How far from its keys a curve passes that smooths.
+fn smoothed<T: AsRef<[Quat]>>(keys: &Keys<T>, scheme: Scheme, ends: Ends) -> Option<Warning> {
+    if scheme.passes_keys() {
+        return None;
+    }
+    let off = |track: &T| {
+        let motion = Motion::new(keys.times, track.as_ref(), scheme, ends);
+        let inner = 1..keys.times.len() - 1;
+        let off = inner.map(|i| (i, motion.at(keys.times[i]).angle_to(track.as_ref()[i])));
+        off.max_by(|a, b| a.1.total_cmp(&b.1))
+    };
+    let (key, worst) = keys.tracks.iter().filter_map(off).max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (worst > 1e-9).then(|| {
+        let message = format!(
+            "{} smooths and passes inner keys at up to {:.2}°, at {}; --scheme natural-c2 meets them",
+            scheme.name(),
+            worst.to_degrees(),
+            (keys.place)(key)
+        );
+        Warning::new("KEYS_SMOOTHED", message)
+    })
+}
+
+/// Tracks for which no motion without jumps in acceleration was found.
+fn jumping<T: AsRef<[Quat]>>(keys: &Keys<T>, scheme: Scheme, ends: Ends) -> Option<Warning> {
+    let solved = |track: &&T| Motion::new(keys.times, track.as_ref(), scheme, ends).is_solved();
+    let left = keys.tracks.iter().filter(|track| !solved(track)).count();
+    (left > 0).then(|| {
+        let message = format!(
+            "{} found no motion without jumps in acceleration for {left} of {} boxes: steps near half a turn \
+             and uneven intervals; its speed does not jump; more keys help",
+            scheme.name(),
+            keys.tracks.len()
+        );
+        Warning::new("ACCELERATION_JUMPS", message)
     })
 }
 
@@ -146,6 +216,41 @@ mod tests {
         let found = found(&clip, Scheme::BesselOverhauser, Ends::Natural);
         assert_eq!(found.len(), 1);
         assert!(found[0].message.contains("t = 1 s (line 3):"), "{}", found[0].message);
+    }
+
+    #[test]
+    fn keys_that_are_not_met_are_named() {
+        let mut clip = clip(&[0.0, 1.0, 2.0, 3.0, 4.0], 20.0);
+        // A steady turn is met; one key off by 6° is missed by a third of that.
+        assert!(codes(&clip, Scheme::BSpline, Ends::Natural).is_empty());
+        clip.tracks[0][2] = clip.tracks[0][2] * Quat::exp(Vec3::new(0.0, 0.0, 3f64.to_radians()));
+        let found = found(&clip, Scheme::BSpline, Ends::Natural);
+        assert_eq!(found[0].code, "KEYS_SMOOTHED");
+        assert!(found[0].message.contains("2.00°, at t = 2 s (line 4)"), "{}", found[0].message);
+    }
+
+    #[test]
+    fn slerps_a_turn_apart_are_named() {
+        // On through the second interval the first step would make 640°, the second makes 80°.
+        let uneven = clip(&[0.0, 1.0, 9.0, 17.0], 80.0);
+        assert_eq!(codes(&uneven, Scheme::BarryGoldman, Ends::Natural), ["POWER_WRAPS"]);
+        assert!(codes(&clip(&[0.0, 1.0, 4.0, 7.0], 80.0), Scheme::BarryGoldman, Ends::Natural).is_empty());
+    }
+
+    #[test]
+    fn jumps_in_acceleration_are_said() {
+        let mut clip = clip(&[0.0, 1.0, 2.0, 3.0], 60.0);
+        assert!(codes(&clip, Scheme::NaturalC2, Ends::Natural).is_empty());
+        // 170° at a time about axes that turn back and forth.
+        let axes = [[1.0, -1.0, -1.0], [-1.0, -1.0, 1.0], [1.0, 0.0, -1.0]];
+        let steps = axes.map(|[x, y, z]| Vec3::new(x, y, z));
+        let turns = steps.iter().scan(Quat::IDENTITY, |q, &axis| {
+            *q = *q * Quat::exp(axis * (85f64.to_radians() / axis.length()));
+            Some(*q)
+        });
+        clip.tracks = vec![std::iter::once(Quat::IDENTITY).chain(turns).collect()];
+        clip.times = vec![0.0, 1.0, 2.0, 5.0];
+        assert_eq!(codes(&clip, Scheme::NaturalC2, Ends::Natural), ["ACCELERATION_JUMPS"]);
     }
 
     #[test]

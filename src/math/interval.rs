@@ -115,6 +115,10 @@ impl Scalar for Interval {
         Interval::new(x, x)
     }
 
+    fn sqrt(self) -> Self {
+        Interval::outward(self.lo.max(0.0).sqrt(), self.hi.max(0.0).sqrt())
+    }
+
     fn sin_cos(self) -> (Self, Self) {
         (self.sin(), (self + Interval::around(FRAC_PI_2, FRAC_PI_2)).sin())
     }
@@ -166,6 +170,7 @@ mod tests {
             prop_assert!(holds(sin, x.sin()) && holds(cos, x.cos()));
             let square = Interval::new(a.lo.abs(), a.lo.abs() + (a.hi - a.lo));
             let inside = square.lo + (x - a.lo);
+            prop_assert!(holds(square.sqrt(), inside.sqrt()));
             let (cos, sinc) = square.cos_sinc_of_square();
             let (at_cos, at_sinc) = inside.cos_sinc_of_square();
             prop_assert!(holds(cos, at_cos) && holds(sinc, at_sinc));

@@ -86,6 +86,12 @@ impl<B: Base> Scalar for Jet<B> {
         Jet { value: B::constant(x), first: B::constant(0.0), second: B::constant(0.0) }
     }
 
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        let first = B::constant(0.5) / root;
+        self.chain([root, first, B::constant(-0.5) * first / self.value])
+    }
+
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = self.value.sin_cos();
         (self.chain([sin, cos, -sin]), self.chain([cos, -sin, -cos]))
@@ -126,7 +132,7 @@ impl<B: Base> Quat<Jet<B>> {
 
 /// The Stumpff functions c₀ … c₅, c_k(x) = Σᵢ (−x)ⁱ / (k + 2i)!, for x ≥ 0: c₀ and c₁
 /// are cos √x and sin √x / √x, and c_k = 1/k! − x c_{k+2}. Source: Stumpff 1959.
-fn stumpff(x: f64) -> [f64; 6] {
+pub(crate) fn stumpff(x: f64) -> [f64; 6] {
     if x < 1.0 {
         // Twelve terms leave less than 1/24! for x below 1.
         return std::array::from_fn(|k| {
@@ -268,6 +274,15 @@ mod tests {
         let t = 0.3f64.tan();
         assert!((tan.first - (1.0 + t * t)).abs() < 1e-14);
         assert!((tan.second - 2.0 * t * (1.0 + t * t)).abs() < 1e-14);
+    }
+
+    #[test]
+    fn square_root_rule() {
+        let root = (Jet::variable(0.3) * Jet::constant(4.0) + Jet::constant(1.0)).sqrt();
+        // √(1 + 4u): 2/√, −4/√³.
+        let x = 2.2f64.sqrt();
+        assert!((root.value - x).abs() < 1e-15 && (root.first - 2.0 / x).abs() < 1e-15);
+        assert!((root.second + 4.0 / x.powi(3)).abs() < 1e-15);
     }
 
     #[test]

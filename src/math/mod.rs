@@ -8,6 +8,7 @@ mod vec3;
 
 pub use interval::Interval;
 pub use jet::Jet;
+pub(crate) use jet::stumpff;
 pub use quat::Quat;
 pub use scalar::Scalar;
 pub use vec3::Vec3;

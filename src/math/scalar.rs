@@ -6,7 +6,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// derivatives ([`super::Jet`]), or known only to lie in a range
 /// ([`super::Interval`]).
 ///
-/// The three functions are those by which rotations differ from vectors. Each is
+/// The functions are those by which rotations differ from vectors, and the root. Each is
 /// analytic where the curves need it, so that a formula written with them has no
 /// branches and can be differentiated or bounded as it stands.
 pub trait Scalar:
@@ -14,6 +14,9 @@ pub trait Scalar:
 {
     /// The scalar that stands for the number `x`.
     fn constant(x: f64) -> Self;
+
+    /// The square root, of a number above 0.
+    fn sqrt(self) -> Self;
 
     /// Sine and cosine.
     fn sin_cos(self) -> (Self, Self);
@@ -29,6 +32,10 @@ pub trait Scalar:
 impl Scalar for f64 {
     fn constant(x: f64) -> Self {
         x
+    }
+
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
     }
 
     fn sin_cos(self) -> (Self, Self) {

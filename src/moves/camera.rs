@@ -184,7 +184,7 @@ impl Rails {
             Sight::Root => self.look(&ground.camera_knots, move |t| ground.root_at(t)),
             Sight::Point(point) => self.look(&self.way.knots, move |_| *point),
             Sight::Turned { times, keys, through: Through::Keys } => {
-                Move::Keys(Motion::new(times, keys, scheme, Ends::Natural))
+                Move::Keys(Motion::new(times, keys, scheme, Ends::Natural).with_tcb(ground.shape().tcb))
             }
             Sight::Turned { times, keys, through: Through::Controls } => {
                 Move::Keys(Motion::through_controls(times, keys))

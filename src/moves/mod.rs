@@ -14,7 +14,7 @@ pub use copies::{Copies, Moment, Stream, TooMany};
 pub use keys::{camera_keys, rotation_keys};
 
 use crate::clip::{Body, Clip, Through};
-use crate::curve::{Arc, Ends, Motion, NotClosed, Scheme};
+use crate::curve::{Arc, Ends, Motion, NotClosed, Scheme, Tcb};
 use crate::math::Quat;
 use crate::orient::{Axis, Frame, Level, ParallelAxes, model_frame};
 use crate::path::{self, Ease, PathEnds, Timing};
@@ -83,6 +83,8 @@ impl Orient {
 pub struct Shape {
     /// What rotations do at their ends.
     pub ends: Ends,
+    /// Tension, continuity and bias of the scheme that has them.
+    pub tcb: Tcb,
     /// What the path does at its ends.
     pub path_ends: PathEnds,
     /// How time is shared out along the path.
@@ -114,6 +116,7 @@ impl Default for Shape {
     fn default() -> Shape {
         Shape {
             ends: Ends::default(),
+            tcb: Tcb::default(),
             path_ends: PathEnds::default(),
             timing: None,
             ease: Ease::None,
@@ -211,7 +214,7 @@ impl Move<'_> {
     /// The same as what samplers take, if it is a rotation.
     pub fn rotation(&self) -> Option<Rotation<'_>> {
         match self {
-            Move::Keys(motion) => Some(Rotation::Motion(*motion)),
+            Move::Keys(motion) => Some(Rotation::Motion(motion.clone())),
             Move::Attitude(turn) => Some(Rotation::Function(&turn.at)),
             Move::Travel(_) => None,
         }
@@ -249,7 +252,7 @@ impl<'a> Ground<'a> {
     pub fn new(inputs: &'a Inputs, shape: Shape, schemes: &[Scheme]) -> Result<Ground<'a>, Error> {
         let clip = inputs.keyframes.as_ref().map(|keyframes| &keyframes.clip);
         let keys = clip.filter(|clip| clip.through == Through::Keys);
-        if let Some(clip) = keys.filter(|_| schemes.iter().any(|&scheme| scheme != Scheme::Slerp)) {
+        if let Some(clip) = keys.filter(|_| schemes.iter().any(|scheme| scheme.has_ends())) {
             shape.ends.accept(clip)?;
         }
         let zero = zero(inputs);
@@ -381,8 +384,9 @@ impl<'a> Ground<'a> {
     /// What of the object moves, by a scheme, in the order in which files hold it.
     pub fn moves(&self, scheme: Scheme) -> Vec<(Mover, Move<'_>)> {
         let clip = self.inputs.keyframes.as_ref().map(|keyframes| &keyframes.clip);
+        let Shape { ends, tcb, .. } = self.shape;
         let motion = |keys, through| match through {
-            Through::Keys => Motion::new(&self.key_times, keys, scheme, self.shape.ends),
+            Through::Keys => Motion::new(&self.key_times, keys, scheme, ends).with_tcb(tcb),
             Through::Controls => Motion::through_controls(&self.key_times, keys),
         };
         let tracks = clip.iter().flat_map(|clip| clip.tracks.iter().map(|keys| motion(keys, clip.through)));

@@ -101,7 +101,8 @@ impl Way {
             Orient::None => None,
             Orient::Keyed => {
                 let (times, keys) = &self.keyed;
-                Some(Move::Keys(Motion::new(times, keys, scheme, key_ends(shape.ends))))
+                let motion = Motion::new(times, keys, scheme, key_ends(shape.ends));
+                Some(Move::Keys(motion.with_tcb(shape.tcb)))
             }
             Orient::Tangent => Some(self.facing(Tangent::new(&self.path), shape.level)),
             Orient::Upright => Some(self.facing(Upright::new(&self.path, shape.bank), shape.level)),

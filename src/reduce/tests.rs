@@ -71,7 +71,7 @@ fn keys_keep_the_tolerance_and_few_do_off_the_curve() {
     for (scheme, even) in [(Scheme::Bessel, true), (Scheme::Bessel, false), (Scheme::CatmullRom, false)] {
         let (times, keys) = clip(even, 25);
         let motion = Motion::new(&times, &keys, scheme, Ends::Natural);
-        let curve = Turning::new(motion);
+        let curve = Turning::new(motion.clone());
         for tolerance in [0.1, 0.01, 0.001] {
             let name = format!("{} {even} {tolerance}", scheme.name());
             let options = Options::new(tolerance);
@@ -121,7 +121,7 @@ fn on_the_curve_the_optimum_is_near() {
     for (scheme, even) in [(Scheme::Bessel, true), (Scheme::Squad, false)] {
         let (times, keys) = clip(even, 7);
         let motion = Motion::new(&times, &keys, scheme, Ends::Natural);
-        let curve = Turning::new(motion);
+        let curve = Turning::new(motion.clone());
         let found = rotation(&curve, &Options { on_curve: true, ..Options::new(0.3) }).unwrap();
         // Corners are kept: each stretch between two has its own optimum.
         let stops: Vec<f64> =
@@ -182,7 +182,7 @@ fn a_jump_keeps_its_ramp() {
     let (times, keys) = clip(true, 5);
     let motion = Motion::new(&times, &keys, Scheme::Bessel, Ends::Hold);
     let options = Options { max_step: Some(18.0), ..Options::new(0.05) };
-    let found = rotation(&Turning::new(motion), &options).unwrap();
+    let found = rotation(&Turning::new(motion.clone()), &options).unwrap();
     assert_sound(&found, &motion, &options, "hold");
     for time in [motion.ramp().unwrap() as f32, times[1] as f32] {
         assert!(found.times.contains(&time));
@@ -389,7 +389,7 @@ fn keys_of_a_dense_file_are_thinned_out() {
     let times: Vec<f64> = (0..=1200).map(|i| f64::from((f64::from(i) / 60.0) as f32)).collect();
     let keys = times.iter().map(|&t| motion.at(t)).collect();
     let dense = Dense { times, keys };
-    let straight = rotation(&Turning::new(motion), &Options::new(0.1)).unwrap();
+    let straight = rotation(&Turning::new(motion.clone()), &Options::new(0.1)).unwrap();
     let options = Options::new(0.1);
     let found = rotation(&dense, &options).unwrap();
     // Near what the curve itself needs: the file is less than 0.02° off it.

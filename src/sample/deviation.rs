@@ -335,10 +335,11 @@ mod tests {
             let timeline = Timeline::new(motion.times(), motion.ramp(), fps_parsed, key_times).unwrap();
             let times: Vec<f32> = (0..timeline.chunks()).flat_map(|i| timeline.chunk(i).1).collect();
             let mut samples = Vec::new();
-            let facts = rotations(&[Rotation::Motion(motion)], &timeline, Default::default(), |chunk| {
-                samples.extend_from_slice(chunk);
-                Ok::<(), ()>(())
-            });
+            let facts =
+                rotations(&[Rotation::Motion(motion.clone())], &timeline, Default::default(), |chunk| {
+                    samples.extend_from_slice(chunk);
+                    Ok::<(), ()>(())
+                });
             let facts = facts.unwrap()[0];
             let measured = measured(&motion, &times, &samples);
             for (bound, worst) in [facts.deviation, facts.nlerp].into_iter().zip(measured) {

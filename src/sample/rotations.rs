@@ -29,7 +29,7 @@ impl Steps {
 }
 
 /// A rotation as a function of time.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub enum Rotation<'a> {
     /// The motion through a track's keys.
     Motion(Motion<'a>),

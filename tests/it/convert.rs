@@ -272,10 +272,28 @@ fn every_good_fixture_passes_the_strictest_check() {
     for name in good() {
         let (input, output) = (keyframes(&name), folder.path().join(format!("{name}.glb")));
         let (input, output) = (input.to_str().unwrap(), output.to_str().unwrap());
-        // At 60 frames a second the wildest of them have steps of more than 18 degrees.
-        run([input, output, "--scheme", "all", "--fps", "120", "-q"]).exits(0);
+        // At 240 frames a second the wildest of them have steps of more than 18 degrees.
+        run([input, output, "--scheme", "all", "--fps", "480", "-q"]).exits(0);
         let ran = run(["check", "--strict", output, "--against", input]).exits(0);
         let last = ran.out().lines().last().unwrap().to_owned();
         assert!(last.ends_with(": 0 errors, 0 warnings, 0 infos"), "{}", ran.out());
     }
+}
+
+#[test]
+fn tension_continuity_and_bias_are_kept_for_later_checks() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("out.glb");
+    let output = output.to_str().unwrap();
+    let (scheme, tension) = (["--scheme", "kochanek-bartels"], ["--tension", "-0.5", "--bias", "1"]);
+    let options = [&scheme[..], &tension, &["-q"]].concat();
+    run([&[SINGLE, output], &options[..]].concat()).exits(0);
+    run(["check", output, "--against", SINGLE]).exits(0);
+    // Another curve: neither plain nor by default.
+    run([&[SINGLE, output][..], &scheme, &["-q"]].concat()).exits(0);
+    let plain = std::fs::read(output).unwrap();
+    run([&[SINGLE, output], &options[..]].concat()).exits(0);
+    assert_ne!(std::fs::read(output).unwrap(), plain);
+    run([&[SINGLE, output][..], &tension].concat()).exits(2).says(&["--scheme kochanek-bartels"]);
+    run([SINGLE, output, "--tension", "2"]).exits(2).says(&["from -1 to 1"]);
 }

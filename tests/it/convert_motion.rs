@@ -126,10 +126,13 @@ fn every_key_of_the_file_is_passed_through() {
         let clip = read_clip(&keyframes(&name));
         for ends in ends_of(&clip) {
             let loaded = convert(&name, &["--scheme", "all", "--ends", ends.name()], folder.path());
-            for (found, keys) in loaded.clips.iter().flat_map(|found| found.channels.iter().zip(&clip.tracks))
-            {
-                let slerp = loaded.clips[0].channels.iter().any(|channel| std::ptr::eq(channel, found));
-                let held = ends == Ends::Hold && !slerp && keys.len() > 2;
+            // One clip a scheme; those that smooth do not meet their keys.
+            let clips = loaded.clips.iter().zip(Scheme::ALL).filter(|(_, scheme)| scheme.passes_keys());
+            let channels = clips.flat_map(|(found, scheme)| {
+                found.channels.iter().zip(&clip.tracks).map(move |(c, k)| (scheme, c, k))
+            });
+            for (scheme, found, keys) in channels {
+                let held = ends == Ends::Hold && scheme.has_ends() && keys.len() > 2;
                 let last = keys.len() - 1;
                 for (i, (&t, &key)) in clip.times.iter().zip(keys).enumerate() {
                     let key = if held && i == last { keys[last - 1] } else { key };

@@ -1,7 +1,7 @@
 //! Every scheme against values computed by another program in another language with 50
 //! digits (fixtures/reference).
 
-use dat2glb::curve::{Ends, Motion, Scheme};
+use dat2glb::curve::{Ends, Motion, Scheme, Tcb};
 use dat2glb::math::Quat;
 use dat2glb::read;
 use serde::Deserialize;
@@ -18,6 +18,9 @@ struct Reference {
 struct Case {
     scheme: String,
     ends: String,
+    /// Tension, continuity and bias.
+    #[serde(default)]
+    tcb: [f64; 3],
     times: Vec<f64>,
     /// By box, by time, w x y z.
     values: Vec<Vec<[f64; 4]>>,
@@ -52,7 +55,9 @@ fn compare(reference: &Reference) -> usize {
         let (scheme, ends) = (Scheme::from_name(&case.scheme).unwrap(), Ends::from_name(&case.ends).unwrap());
         assert_eq!(case.values.len(), clip.tracks.len());
         for (index, (track, values)) in clip.tracks.iter().zip(&case.values).enumerate() {
+            let [tension, continuity, bias] = case.tcb;
             let motion = Motion::new(&clip.times, track, scheme, ends);
+            let motion = motion.with_tcb(Tcb { tension, continuity, bias });
             for (&t, &value) in case.times.iter().zip(values) {
                 let error = motion.at(t).angle_to(Quat::from_wxyz(value)).to_degrees();
                 // Both are float64 at the end: keys carry 1e-16, and the steepest motion

@@ -59,6 +59,44 @@ fn slerp_is_what_scipy_calls_slerp() {
     }
 }
 
+/// Made by fixtures/reference/rotation_spline.py.
+#[derive(Deserialize)]
+struct Splines {
+    fixture: String,
+    boxes: Vec<Spline>,
+}
+
+#[derive(Deserialize)]
+struct Spline {
+    times: Vec<f64>,
+    /// w x y z.
+    values: Vec<[f64; 4]>,
+    /// The largest jump of its acceleration at a key, by the longer interval squared, rad.
+    jump: f64,
+}
+
+#[test]
+fn natural_c2_is_what_scipy_calls_rotation_spline() {
+    let path = fixtures().join("reference/scipy/rotation-spline.json");
+    let cases: Vec<Splines> = serde_json::from_slice(&fs::read(path).unwrap()).unwrap();
+    let mut compared = 0;
+    for Splines { fixture, boxes } in cases {
+        let clip = read_clip(&keyframes(&fixture));
+        for (spline, track) in boxes.iter().zip(&clip.tracks) {
+            let motion = Motion::new(&clip.times, track, Scheme::NaturalC2, Ends::Chord);
+            // Were turns added up as vectors, a jump J beside an interval h would cost a
+            // velocity Jh/4 and a place 0.3h times that: 0.08 Jh². Large turns multiply it.
+            let limit = 0.25 * spline.jump + 1e-12;
+            for (&t, &value) in spline.times.iter().zip(&spline.values) {
+                let apart = motion.at(t).angle_to(Quat::from_wxyz(value));
+                assert!(apart < limit, "{fixture} at {t}: {apart}, limit {limit}");
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 400, "{compared}");
+}
+
 #[test]
 fn the_wrong_order_is_noticed_and_the_right_one_is_not() {
     let text = fs::read(keyframes("scipy")).unwrap();
