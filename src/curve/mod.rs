@@ -24,6 +24,7 @@ mod rule;
 mod scheme;
 mod slerp;
 mod squad;
+mod step;
 mod tcb;
 mod track;
 mod warnings;

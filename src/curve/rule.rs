@@ -7,6 +7,8 @@ use crate::math::{Quat, Vec3};
 /// Where a scheme's motion has no jumps in speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Smoothness {
+    /// The motion itself jumps at keys.
+    Jumps,
     /// Not at the keys.
     Corners,
     /// At the keys too, where they are evenly spaced in time.

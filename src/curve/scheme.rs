@@ -3,12 +3,12 @@
 use super::rule::{Rule, Smoothness, Span, Velocities};
 use super::{
     Arc, Rates, b_spline, barry_goldman, bessel, bessel_overhauser, catmull_rom, kochanek_bartels,
-    natural_c2, nlerp, slerp, squad,
+    natural_c2, nlerp, slerp, squad, step,
 };
 use crate::math::{Quat, Scalar};
 
 macro_rules! schemes {
-    ($($name:ident = $rule:path,)*) => {
+    ($($listed:ident,)*; $($name:ident = $rule:path,)*) => {
         /// How rotations run from key to key.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[expect(missing_docs, reason = "each scheme's own file and page describe it")]
@@ -19,8 +19,8 @@ macro_rules! schemes {
         pub(super) enum Segment { $($name(<$rule as Rule>::Arc),)* }
 
         impl Scheme {
-            /// Every scheme, in the order of the documentation.
-            pub const ALL: &'static [Scheme] = &[$(Scheme::$name,)*];
+            /// Every scheme that LINEAR samples can show, in the order of the documentation.
+            pub const ALL: &'static [Scheme] = &[$(Scheme::$listed,)*];
 
             /// The name by which users choose it.
             pub fn name(self) -> &'static str {
@@ -70,6 +70,7 @@ macro_rules! schemes {
 }
 
 schemes! {
+    Slerp, Squad, CatmullRom, BesselOverhauser, Bessel, KochanekBartels, BarryGoldman, NaturalC2, BSpline, Nlerp,;
     Slerp = slerp::Slerp,
     Squad = squad::Squad,
     CatmullRom = catmull_rom::CatmullRom,
@@ -80,9 +81,15 @@ schemes! {
     NaturalC2 = natural_c2::NaturalC2,
     BSpline = b_spline::BSpline,
     Nlerp = nlerp::Nlerp,
+    Step = step::Step,
 }
 
 impl Scheme {
+    /// Whether its motion is held from key to key and jumps: what only STEP channels show.
+    pub fn is_step(self) -> bool {
+        self.smoothness() == Smoothness::Jumps
+    }
+
     /// Whether tension, continuity and bias shape it.
     pub fn has_tcb(self) -> bool {
         self == Scheme::KochanekBartels

@@ -86,7 +86,7 @@ fn velocity_is_continuous_where_the_scheme_says_so() {
             let keys = closed_keys();
             let motion = Motion::new(&times, &keys, scheme, ends);
             let smooth = match scheme.smoothness() {
-                Smoothness::Corners => false,
+                Smoothness::Jumps | Smoothness::Corners => false,
                 Smoothness::EvenKeys => times == EVEN,
                 Smoothness::Always | Smoothness::Twice => true,
             };
@@ -557,6 +557,20 @@ fn held_b_splines_begin_and_end_at_the_keys_that_are_shown() {
         let motion = Motion::new(&UNEVEN[..count], &keys[..count], Scheme::BSpline, Ends::Hold);
         for i in [1, count - 2] {
             assert!(motion.at(UNEVEN[i]).angle_to(keys[i]) < 1e-14, "{i} of {count}");
+        }
+    }
+}
+
+#[test]
+fn steps_hold_each_key_until_the_next() {
+    assert!(Scheme::Step.is_step() && !Scheme::ALL.iter().any(|scheme| scheme.is_step()));
+    let keys = keys();
+    for ends in Ends::ALL {
+        let motion = Motion::new(&UNEVEN, &keys, Scheme::Step, ends);
+        assert_eq!((motion.at(-1.0), motion.at(9.0), motion.ramp()), (keys[0], keys[6], None));
+        for (i, &t) in UNEVEN.iter().enumerate() {
+            assert_eq!(motion.at(t), keys[i]);
+            assert_eq!(motion.at(t.next_down()), keys[i.saturating_sub(1)]);
         }
     }
 }
