@@ -110,7 +110,10 @@ impl Worst {
     /// Whether rates of the part alone might do.
     fn hopeful(&self, gap: &impl Gap, part: &Part, rates: Rates) -> bool {
         let hoped = Rates { speed: rates.speed, acceleration: HOPE * rates.acceleration };
-        !rates.acceleration.is_finite() || self.accepts(gap.bound(part, hoped))
+        // Rates that bound nothing may be far from those of the part.
+        let known = rates.speed.is_finite() && rates.acceleration.is_finite();
+        let h = part.to - part.from;
+        !known || rates.speed * h > 1.0 || self.accepts(gap.bound(part, hoped))
     }
 }
 
