@@ -57,8 +57,11 @@ impl<V: Value> Key<V> {
 /// A curve whose last values are remembered: the states of a round look at the same times.
 pub(super) struct Remembered<'a, C: Curve> {
     pub(super) curve: &'a C,
-    values: RefCell<Vec<Option<(f64, C::Value)>>>,
+    values: RefCell<Vec<Place<C::Value>>>,
 }
+
+/// A time with the value there, once there is one.
+type Place<V> = Option<(f64, V)>;
 
 impl<'a, C: Curve> Remembered<'a, C> {
     const PLACES: usize = 512;
