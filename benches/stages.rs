@@ -6,6 +6,7 @@ use dat2glb::curve::{Arc, Ends, Motion, Scheme};
 use dat2glb::math::{Quat, Vec3};
 use dat2glb::moves::{Ground, Inputs, Shape};
 use dat2glb::read::{self, Keyframes};
+use dat2glb::reduce::{self, Turning};
 use dat2glb::sample::{Fps, Rotation, Timeline, rotations};
 use divan::counter::{BytesCount, ItemsCount};
 use divan::{Bencher, black_box};
@@ -80,6 +81,18 @@ fn sample(bencher: Bencher, scheme: &str) {
         })
         .unwrap()
     });
+}
+
+/// One core: the fewest keys within a tolerance in degrees, with the proof; by input keys.
+#[divan::bench(args = [0.1, 0.01, 0.001])]
+fn fewest_keys(bencher: Bencher, tolerance: f64) {
+    let clip = keyframes(1, 10_000).clip;
+    let motion = Motion::new(&clip.times, &clip.tracks[0], Scheme::Bessel, Ends::Natural);
+    let curve = Turning::new(motion);
+    let options = reduce::Options { max_step: Some(18.0), ..reduce::Options::new(tolerance) };
+    bencher
+        .counter(ItemsCount::new(clip.times.len()))
+        .bench(|| reduce::rotation(&curve, black_box(&options)).unwrap());
 }
 
 /// Sampling and writing a .glb to memory.

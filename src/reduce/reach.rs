@@ -8,6 +8,7 @@
 
 use super::curve::Curve;
 use super::value::{Step, Value};
+use std::cell::RefCell;
 
 /// Samples that a first guess of the reach is divided into.
 const SAMPLES: f64 = 20.0;
@@ -16,7 +17,7 @@ const FEW: usize = 12;
 /// With more, the rest is sampled half as densely.
 const MANY: usize = 48;
 /// How often the reach is halved between two samples.
-const HALVINGS: usize = 6;
+const HALVINGS: usize = 5;
 /// Moves towards the common point of the balls.
 const MOVES: usize = 20;
 /// How far within a ball such a move goes.
@@ -53,9 +54,36 @@ impl<V: Value> Key<V> {
     }
 }
 
+/// A curve whose last values are remembered: the states of a round look at the same times.
+pub(super) struct Remembered<'a, C: Curve> {
+    pub(super) curve: &'a C,
+    values: RefCell<Vec<Place<C::Value>>>,
+}
+
+/// A time with the value there, once there is one.
+type Place<V> = Option<(f64, V)>;
+
+impl<'a, C: Curve> Remembered<'a, C> {
+    const PLACES: usize = 512;
+
+    pub(super) fn new(curve: &'a C) -> Remembered<'a, C> {
+        Remembered { curve, values: RefCell::new(vec![None; Self::PLACES]) }
+    }
+
+    pub(super) fn at(&self, t: f64) -> C::Value {
+        // Fibonacci hashing: the high bits of the product depend on all bits of the time.
+        let hash = t.to_bits().wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
+        let place = &mut self.values.borrow_mut()[hash as usize % Self::PLACES];
+        match place {
+            Some((time, value)) if *time == t => *value,
+            _ => place.insert((t, self.curve.at(t))).1,
+        }
+    }
+}
+
 /// The curve ahead of a key.
 pub(super) struct Ahead<'a, C: Curve> {
-    curve: &'a C,
+    curve: &'a Remembered<'a, C>,
     limits: Limits,
     key: Key<C::Value>,
     start: f64,
@@ -63,7 +91,7 @@ pub(super) struct Ahead<'a, C: Curve> {
     off: f64,
     /// The next key that must be, and whether it is the last of all.
     stop: (f32, bool),
-    /// τ and y, with those of a first sample too many left out.
+    /// τ and y as far as one interval serves.
     samples: Vec<(f64, StepOf<C>)>,
     /// A common point of the balls.
     aim: StepOf<C>,
@@ -81,7 +109,7 @@ impl<'a, C: Curve> Ahead<'a, C> {
     /// Looks ahead of a key to the next one that must be; `guess` is about how long an
     /// interval lasts, seconds.
     pub(super) fn new(
-        curve: &'a C,
+        curve: &'a Remembered<'a, C>,
         limits: Limits,
         key: Key<C::Value>,
         stop: (f32, bool),
@@ -141,28 +169,25 @@ impl<'a, C: Curve> Ahead<'a, C> {
     }
 
     /// Samples at grid times and at knots as far as one interval serves; returns the time
-    /// that it does not serve, or none if it serves all.
-    fn sample(&mut self, mut h: f64) -> Option<f64> {
+    /// that it does not serve, or none if it serves all. Grids of several keys coincide:
+    /// they are multiples of a spacing of which there are two to an octave.
+    fn sample(&mut self, spacing: f64) -> Option<f64> {
         self.samples.clear();
-        let knots = self.curve.knots();
+        let mut h = (0.5 * (2.0 * spacing.log2()).floor()).exp2();
+        let knots = self.curve.curve.knots();
         let mut knots = knots[knots.partition_point(|&knot| knot <= self.start)..].iter().peekable();
-        let (whole, mut tau) = (self.whole(), 0.0);
-        while tau < whole {
-            let grid = if tau + 1.5 * h > whole { whole } else { tau + h };
-            let next = match knots.peek() {
-                Some(&&knot) if knot - self.start <= grid => {
-                    knots.next();
-                    (knot - self.start).min(whole)
-                }
-                _ => grid,
-            };
-            if next <= tau {
+        let (stop, mut t) = (f64::from(self.stop.0), self.start);
+        while t < stop {
+            let next = ((t / h + 0.1).floor() + 1.0) * h;
+            let grid = if next + 0.5 * h > stop { stop } else { next };
+            let next = knots.next_if(|&&knot| knot <= grid).map_or(grid, |knot| knot.min(stop));
+            if next <= t {
                 continue;
             }
             if !self.push(next) {
-                return Some(next);
+                return Some(next - self.start);
             }
-            tau = next;
+            t = next;
             if self.samples.len().is_multiple_of(MANY) {
                 h *= 2.0;
             }
@@ -171,8 +196,8 @@ impl<'a, C: Curve> Ahead<'a, C> {
     }
 
     /// Takes one more sample if one interval can serve it too.
-    fn push(&mut self, tau: f64) -> bool {
-        let y = self.seen(tau);
+    fn push(&mut self, t: f64) -> bool {
+        let (tau, y) = (t - self.start, self.key.value.step_to(self.curve.at(t)));
         if y.length() > C::Value::LONGEST {
             return false;
         }
@@ -199,7 +224,7 @@ impl<'a, C: Curve> Ahead<'a, C> {
         let (mut good, mut bad) = (self.samples.last().map_or(0.0, |sample| sample.0), unseen);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (good + bad);
-            if middle > good && self.push(middle) {
+            if middle > good && self.push(self.start + middle) {
                 good = middle;
             } else {
                 bad = middle;
@@ -362,7 +387,7 @@ impl<'a, C: Curve> Ahead<'a, C> {
                 good = stepped;
             }
         }
-        for _ in 0..2 * HALVINGS {
+        for _ in 0..10 {
             let middle = 0.5 * (good + bad);
             if on_curve(middle).is_some() { good = middle } else { bad = middle }
         }

@@ -6,7 +6,7 @@
 //! predecessor.
 
 use super::curve::Curve;
-use super::reach::{Ahead, Key, Limits};
+use super::reach::{Ahead, Key, Limits, Remembered};
 use super::value::Value;
 
 /// States that stay in each round.
@@ -31,6 +31,7 @@ pub(super) fn fewest<C: Curve>(
     stops: &[f32],
     limits: Limits,
 ) -> Result<Vec<Key<C::Value>>, Stuck> {
+    let curve = &Remembered::new(curve);
     let last = stops[stops.len() - 1];
     let first = Key::new(stops[0], curve.at(f64::from(stops[0])));
     let mut nodes = vec![Node { key: first, before: 0 }];
@@ -64,14 +65,14 @@ pub(super) fn fewest<C: Curve>(
 }
 
 fn look<'a, C: Curve>(
-    curve: &'a C,
+    curve: &'a Remembered<'a, C>,
     stops: &[f32],
     limits: Limits,
     key: Key<C::Value>,
     guess: f64,
 ) -> Ahead<'a, C> {
     let next = stops.partition_point(|&stop| stop <= key.time).min(stops.len() - 1);
-    let ramps = curve.ramps().iter().any(|&(from, to)| from as f32 <= key.time && key.time < to as f32);
+    let ramps = curve.curve.ramps().iter().any(|&(from, to)| from as f32 <= key.time && key.time < to as f32);
     let limits = if ramps { Limits { step: f64::INFINITY, ..limits } } else { limits };
     Ahead::new(curve, limits, key, (stops[next], next + 1 == stops.len()), guess)
 }
