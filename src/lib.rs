@@ -7,7 +7,7 @@
 //! clock, [`sample`] evaluates them at the times a viewer will play, or [`reduce`]
 //! at as few as a tolerance allows, [`mod@write`] makes a glTF file of the samples, [`asset`] loads any glTF
 //! file back, [`check`] judges it and `render` draws it. [`convert`] is these
-//! stages in a row.
+//! stages in a row; [`compare`] puts the schemes side by side.
 //!
 //! # Conventions
 //!
@@ -20,6 +20,7 @@
 pub mod asset;
 pub mod check;
 pub mod clip;
+pub mod compare;
 pub mod convert;
 pub mod curve;
 pub mod inspect;

@@ -9,6 +9,7 @@ const COMMANDS: &[&str] = &[
     "thumbnail",
     "inspect",
     "sample",
+    "compare",
     "example",
     "completions",
     "man",
