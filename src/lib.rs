@@ -7,8 +7,9 @@
 //! clock, [`sample`] evaluates them at the times a viewer will play, [`reduce`]
 //! finds as few times as a tolerance allows, [`mod@write`] makes a glTF file of
 //! the samples, [`asset`] loads any glTF file back, [`check`] judges it and
-//! `render` draws it. [`convert`] is these stages in a row. [`diff`] compares two
-//! files, and [`report`] writes findings for other programs.
+//! `render` draws it. [`convert`] is these stages in a row. [`compare`] puts
+//! the schemes side by side, [`diff`] two files, and [`report`] writes findings for
+//! other programs.
 //!
 //! # Conventions
 //!
@@ -21,6 +22,7 @@
 pub mod asset;
 pub mod check;
 pub mod clip;
+pub mod compare;
 pub mod convert;
 pub mod curve;
 pub mod diff;

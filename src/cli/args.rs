@@ -55,6 +55,13 @@ pub(crate) enum Command {
     Inspect(Inspect),
     /// Write the motion as a table: CSV, a row a time
     Sample(Sample),
+    /// Compare schemes: speed, smoothness, overshoot, keys needed
+    ///
+    /// A row a scheme: the largest and the root-mean-square angular speed and acceleration;
+    /// by how much angular velocity and acceleration jump at a key at most; how far the
+    /// motion goes beyond its keys (overshoot) and off the arc between them (stray), degrees;
+    /// how many keys playback needs to stay within so many degrees of it, and their bytes.
+    Compare(Compare),
     /// Print a small input to start from
     Example(Example),
     /// Print a completion script for a shell
@@ -183,13 +190,7 @@ impl Convert {
 
     /// The schemes asked for, each once, in the order given.
     pub(crate) fn schemes(&self) -> Vec<Scheme> {
-        let mut schemes = Vec::new();
-        for scheme in self.scheme.iter().flat_map(|asked| asked.0.iter().copied()) {
-            if !schemes.contains(&scheme) {
-                schemes.push(scheme);
-            }
-        }
-        schemes
+        each_once(&self.scheme)
     }
 }
 
@@ -377,6 +378,34 @@ pub(crate) struct Sample {
     pub(crate) frame: Option<Frame>,
     #[command(flatten, next_help_heading = "Paths")]
     pub(crate) along: Along,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Compare {
+    /// Rotations (.dat); `-` reads standard input
+    #[arg(value_name = "IN", value_hint = ValueHint::FilePath)]
+    pub(crate) input: PathBuf,
+    /// Which schemes, separated by commas; `all` for every one
+    #[arg(long, value_name = "NAME[,NAME…]", default_value = "all", value_delimiter = ',', value_parser = schemes())]
+    scheme: Vec<Schemes>,
+    /// What the motion does at its ends
+    #[arg(long, default_value = "natural", value_parser = ends())]
+    pub(crate) ends: Ends,
+    /// One box alone, counted from 1
+    #[arg(long = "box", value_name = "B", value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) only: Option<u64>,
+    #[command(flatten)]
+    pub(crate) order: OrderFlag,
+    /// Print it as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+impl Compare {
+    /// The schemes asked for, each once, in the order given.
+    pub(crate) fn schemes(&self) -> Vec<Scheme> {
+        each_once(&self.scheme)
+    }
 }
 
 #[derive(Args, Debug)]
@@ -662,6 +691,17 @@ fn step(text: &str) -> Result<f64, String> {
 #[derive(Clone, Debug)]
 struct Schemes(&'static [Scheme]);
 
+/// The schemes of several words, each once, in the order given.
+fn each_once(asked: &[Schemes]) -> Vec<Scheme> {
+    let mut schemes = Vec::new();
+    for scheme in asked.iter().flat_map(|asked| asked.0.iter().copied()) {
+        if !schemes.contains(&scheme) {
+            schemes.push(scheme);
+        }
+    }
+    schemes
+}
+
 /// A parser of names that the help text lists.
 fn named<T: Clone + Send + Sync + 'static>(
     from_name: fn(&str) -> Option<T>,
@@ -752,6 +792,7 @@ pub(crate) fn with_convert_spelled_out(mut arguments: Vec<OsString>) -> Vec<OsSt
             "thumbnail",
             "inspect",
             "sample",
+            "compare",
             "example",
             "completions",
             "man",

@@ -3,6 +3,7 @@
 mod args;
 mod camera;
 mod check;
+mod compare;
 mod convert;
 mod diff;
 mod example;
@@ -55,6 +56,7 @@ pub(crate) fn run(arguments: Vec<OsString>) -> ExitCode {
         Command::Thumbnail(options) => thumbnail::run(&options),
         Command::Inspect(options) => inspect::run(&options),
         Command::Sample(options) => sample::run(&options),
+        Command::Compare(options) => compare::run(&options),
         Command::Example(options) => example::run(&options),
         Command::Completions { shell } => completions(shell),
         Command::Man => man(),

@@ -10,6 +10,7 @@ const COMMANDS: &[&str] = &[
     "thumbnail",
     "inspect",
     "sample",
+    "compare",
     "example",
     "completions",
     "man",

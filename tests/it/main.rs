@@ -8,6 +8,8 @@ mod support;
 #[cfg(feature = "cli")]
 mod check;
 #[cfg(feature = "cli")]
+mod compare;
+#[cfg(feature = "cli")]
 mod convert;
 #[cfg(feature = "cli")]
 mod convert_motion;
