@@ -31,6 +31,7 @@ pub mod read;
 pub mod reduce;
 #[cfg(feature = "render")]
 pub mod render;
+pub mod rewrite;
 pub mod sample;
 pub mod table;
 pub mod write;

@@ -8,6 +8,7 @@ const COMMANDS: &[&str] = &[
     #[cfg(feature = "render")]
     "thumbnail",
     "inspect",
+    "reduce",
     "sample",
     "example",
     "completions",

@@ -22,6 +22,8 @@ mod inspect;
 #[cfg(feature = "cli")]
 mod paths;
 #[cfg(feature = "cli")]
+mod reduce;
+#[cfg(feature = "cli")]
 mod refused;
 #[cfg(feature = "cli")]
 mod sample;
