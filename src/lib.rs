@@ -5,9 +5,9 @@
 //! [`curve`] runs a smooth motion through its keys, [`path`] through points,
 //! and [`orient`] turns an object on its way; [`moves`] puts them on one
 //! clock, [`sample`] evaluates them at the times a viewer will play, or [`reduce`]
-//! at as few as a tolerance allows, [`mod@write`] makes a glTF file of the samples, [`asset`] loads any glTF
-//! file back, [`check`] judges it and `render` draws it. [`convert`] is these
-//! stages in a row.
+//! at as few as a tolerance allows, [`mod@write`] makes a glTF file of the samples, [`asset`]
+//! loads any glTF file back, [`check`] judges it, [`rewrite`] takes keys out of it and
+//! `render` draws it. [`convert`] is these stages in a row.
 //!
 //! # Conventions
 //!

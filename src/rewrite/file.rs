@@ -507,7 +507,7 @@ fn contained(main: &[u8], asset: &Asset, text: &str, bin: Option<Vec<u8>>) -> Re
 }
 
 /// A data: URI of the same media type, in base64 (RFC 4648).
-fn data_uri(old: &str, bytes: &[u8]) -> String {
+pub(super) fn data_uri(old: &str, bytes: &[u8]) -> String {
     const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let head = old.split(',').next().unwrap_or("data:");
     let head = head.strip_suffix(";base64").unwrap_or(head);

@@ -318,7 +318,7 @@ mod tests {
         assert_eq!(change("{ }"), r#"{"count":7,"max":[1.0],"new":"x" }"#);
         assert_eq!(
             change("{ \"sparse\" : {} , \"k\" : 1.0e0, \"count\" : 9,\n\"max\" : [ 1.00 ] }"),
-            "{ \"k\" : 1.0e0, \"count\" : 7,\n\"max\" : [ 1.00 ] , \"new\" : \"x\" }"
+            "{ \"k\" : 1.0e0, \"count\" : 7,\n\"max\" : [ 1.00 ] , \"new\": \"x\" }"
         );
         assert_eq!(change("{\"count\":7.0,\"sparse\":0}"), "{\"count\":7.0,\"max\":[1.0],\"new\":\"x\"}");
     }

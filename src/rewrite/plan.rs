@@ -32,40 +32,53 @@ pub(super) fn changes(
     changes
 }
 
-/// Times are counted once where they are shared.
+/// The changes that save bytes: each by itself, its old times staying where others use
+/// them, and then all others of the same times together if these can go.
 fn worthwhile(asset: &Asset, fixed: &Fixed, all: Vec<Change>) -> Vec<Change> {
-    let mut users: BTreeMap<usize, i64> = BTreeMap::new();
+    let mut users: BTreeMap<usize, usize> = BTreeMap::new();
     for sampler in asset.root().animations.iter().flat_map(|animation| &animation.samplers) {
         *users.entry(sampler.input.value()).or_default() += 1;
     }
-    for change in &all {
-        *users.entry(change.track.input).or_default() -= 1;
+    let mut groups: BTreeMap<usize, Vec<Change>> = BTreeMap::new();
+    for change in all {
+        groups.entry(change.track.input).or_default().push(change);
     }
-    let mut slots = HashSet::new();
     let mut written = HashSet::new();
-    let worth = |change: &Change| {
-        let Change { track, found } = change;
-        let bytes = |numbers: usize, size: usize| (numbers * size) as i64;
-        let old = bytes(track.values.len(), track.stored.component.size());
-        let new = bytes(found.values.len(), found.stored.component.size());
-        let times = found.times.iter().map(|time| time.to_bits()).collect::<Vec<u32>>();
-        let gone = users.get(&track.input) == Some(&0) && !fixed.accessors.contains(&track.input);
-        let slot = gone && !slots.contains(&track.input);
-        let cost = match (slot, written.contains(&times)) {
-            (true, _) => bytes(times.len(), 4) - bytes(track.times.len(), 4),
-            (false, true) => 0,
-            (false, false) => bytes(times.len(), 4) + ACCESSOR,
-        };
-        let kept = if fixed.accessors.contains(&track.output) { old } else { 0 };
-        let worth = new + cost + kept < old;
-        if worth {
-            slots.insert(track.input);
-            written.insert(times);
+    let mut chosen = Vec::new();
+    for (input, group) in groups {
+        let alone = users.get(&input) == Some(&group.len()) && !fixed.accessors.contains(&input);
+        let mut rest = Vec::new();
+        for change in group {
+            if saved(&change, fixed, &mut written.clone()) > 0 {
+                saved(&change, fixed, &mut written);
+                chosen.push(change);
+            } else {
+                rest.push(change);
+            }
         }
-        worth
+        let mut with_rest = written.clone();
+        let times = rest.first().map_or(0, |change| 4 * change.track.times.len() as i64 + ACCESSOR);
+        let total: i64 = rest.iter().map(|change| saved(change, fixed, &mut with_rest)).sum();
+        if alone && total + times > 0 {
+            written = with_rest;
+            chosen.extend(rest);
+        }
+    }
+    chosen.sort_by_key(|change| (change.track.animation, change.track.sampler));
+    chosen
+}
+
+/// Bytes that a change saves if the old times stay; new times are written once.
+fn saved(change: &Change, fixed: &Fixed, written: &mut HashSet<Vec<u32>>) -> i64 {
+    let Change { track, found } = change;
+    let bytes = |numbers: usize, size: usize| (numbers * size) as i64;
+    let old = match fixed.accessors.contains(&track.output) {
+        true => 0,
+        false => bytes(track.values.len(), track.stored.component.size()),
     };
-    let mut worth = worth;
-    all.into_iter().filter(|change| worth(change)).collect()
+    let times = found.times.iter().map(|time| time.to_bits()).collect();
+    let times = if written.insert(times) { bytes(found.times.len(), 4) + ACCESSOR } else { 0 };
+    old - bytes(found.values.len(), found.stored.component.size()) - times
 }
 
 /// Lets a held value last to its clip's end where nothing else does.

@@ -38,7 +38,7 @@ fn picked(track: &Track, kept: &[usize], deviation: f64) -> Found {
 const ROUNDING: f64 = 1.0 / (1 << 23) as f64;
 
 /// The same of rotations, degrees: four numbers, each within 2⁻²⁵.
-const ROTATION_ROUNDING: f64 = 1.2e-5;
+pub(super) const ROTATION_ROUNDING: f64 = 1.2e-5;
 
 /// The distance between a key's value and another, degrees or units.
 fn distance(track: &Track, key: usize, value: &[f64]) -> f64 {

@@ -110,6 +110,11 @@ impl Track {
         ordered && finite && turns
     }
 
+    /// Bytes of times and values.
+    pub(super) fn bytes(&self) -> usize {
+        4 * self.times.len() + self.values.len() * self.stored.component.size()
+    }
+
     /// Numbers stored for a key.
     pub(super) fn stored_width(&self) -> usize {
         self.values.len() / self.times.len()
