@@ -6,10 +6,10 @@
 //! and [`orient`] turns an object on its way; [`moves`] puts them on one
 //! clock, [`sample`] evaluates them at the times a viewer will play, [`reduce`]
 //! finds as few times as a tolerance allows, [`mod@write`] makes a glTF file of
-//! the samples, [`asset`] loads any glTF file back, [`check`] judges it and
-//! `render` draws it. [`convert`] is these stages in a row. [`compare`] puts
-//! the schemes side by side, [`diff`] two files, and [`report`] writes findings for
-//! other programs.
+//! the samples, [`asset`] loads any glTF file back, [`check`] judges it, [`rewrite`]
+//! takes keys out of it and `render` draws it. [`convert`] is these stages in a row.
+//! [`compare`] puts the schemes side by side, [`diff`] two files, and [`report`]
+//! writes findings for other programs.
 //!
 //! # Conventions
 //!
@@ -36,6 +36,7 @@ pub mod reduce;
 #[cfg(feature = "render")]
 pub mod render;
 pub mod report;
+pub mod rewrite;
 pub mod sample;
 pub mod table;
 pub mod write;

@@ -53,6 +53,8 @@ pub(crate) enum Command {
     Thumbnail(Thumbnail),
     /// Say what a file holds: keyframes, .glb or .gltf
     Inspect(Inspect),
+    /// Write a .glb or .gltf again with fewer keys, all else in it as it was
+    Reduce(Reduce),
     /// Write the motion as a table: CSV, a row a time
     Sample(Sample),
     /// Compare schemes: speed, smoothness, overshoot, keys needed
@@ -333,6 +335,43 @@ pub(crate) struct Inspect {
     /// Print it as JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Reduce {
+    /// The file: .glb, .gltf; `-` reads standard input
+    #[arg(value_name = "IN", value_hint = ValueHint::FilePath)]
+    pub(crate) input: PathBuf,
+    /// The file to write, of the same kind; `-` writes a .glb to standard output
+    #[arg(short, long, value_name = "OUT", value_hint = ValueHint::FilePath)]
+    pub(crate) output: PathBuf,
+    /// How far rotations may be off the input's playback, degrees
+    #[arg(long, value_name = "DEG", value_parser = tolerance)]
+    pub(crate) tolerance: f64,
+    /// How far translations may be off, units; without it they lose nothing but rounding
+    #[arg(long, value_name = "UNITS", value_parser = tolerance)]
+    pub(crate) tolerance_distance: Option<f64>,
+    /// How far scales may be off; without it they lose nothing but rounding
+    #[arg(long, value_name = "X", value_parser = tolerance)]
+    pub(crate) tolerance_scale: Option<f64>,
+    /// How far weights of morph targets may be off; without it they lose nothing but
+    /// rounding
+    #[arg(long, value_name = "X", value_parser = tolerance)]
+    pub(crate) tolerance_weight: Option<f64>,
+    /// The largest turn from key to key, degrees: 18 for viewers that blend the four
+    /// numbers
+    #[arg(long, value_name = "DEG", value_parser = tolerance)]
+    pub(crate) max_step: Option<f64>,
+    /// Keep keys on the input's curve, which takes more of them
+    #[arg(long)]
+    pub(crate) on_curve: bool,
+    /// Print the summary as JSON on standard output (on standard error where the .glb
+    /// goes to standard output)
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print errors only
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
 }
 
 #[derive(Args, Debug)]
@@ -760,6 +799,11 @@ fn degrees(text: &str) -> Result<f64, String> {
     if value >= 0.0 { Ok(value) } else { Err("expected degrees or units, 0 or more".to_owned()) }
 }
 
+fn tolerance(text: &str) -> Result<f64, String> {
+    let value = text.parse().ok().filter(|x: &f64| x.is_finite() && *x > 0.0);
+    value.ok_or_else(|| "expected a number above 0, such as 0.01".to_owned())
+}
+
 #[cfg(feature = "render")]
 fn size(text: &str) -> Result<(u32, u32), String> {
     use dat2glb::render::MOST_PIXELS;
@@ -791,6 +835,7 @@ pub(crate) fn with_convert_spelled_out(mut arguments: Vec<OsString>) -> Vec<OsSt
             "diff",
             "thumbnail",
             "inspect",
+            "reduce",
             "sample",
             "compare",
             "example",

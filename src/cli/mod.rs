@@ -1,6 +1,7 @@
 //! What the command line adds to the library: arguments, files, messages, exit codes.
 
 mod args;
+mod bins;
 mod camera;
 mod check;
 mod compare;
@@ -12,6 +13,7 @@ mod files;
 mod inspect;
 mod output;
 mod progress;
+mod reduce;
 mod sample;
 mod summary;
 #[cfg(feature = "render")]
@@ -55,6 +57,7 @@ pub(crate) fn run(arguments: Vec<OsString>) -> ExitCode {
         #[cfg(feature = "render")]
         Command::Thumbnail(options) => thumbnail::run(&options),
         Command::Inspect(options) => inspect::run(&options),
+        Command::Reduce(options) => reduce::run(&options),
         Command::Sample(options) => sample::run(&options),
         Command::Compare(options) => compare::run(&options),
         Command::Example(options) => example::run(&options),

@@ -9,6 +9,7 @@ const COMMANDS: &[&str] = &[
     #[cfg(feature = "render")]
     "thumbnail",
     "inspect",
+    "reduce",
     "sample",
     "compare",
     "example",

@@ -30,6 +30,8 @@ mod outdated;
 #[cfg(feature = "cli")]
 mod paths;
 #[cfg(feature = "cli")]
+mod reduce;
+#[cfg(feature = "cli")]
 mod refused;
 #[cfg(feature = "cli")]
 mod reports;

@@ -1,0 +1,110 @@
+//! Which tracks change: those that take fewer bytes, and one at least that lasts as long
+//! as its clip.
+
+use super::keys::Found;
+use super::refs::Fixed;
+use super::track::Track;
+use crate::asset::Asset;
+use std::collections::{BTreeMap, BTreeSet, HashSet};
+
+/// A track and its new keys.
+#[derive(Clone, Debug)]
+pub(super) struct Change {
+    pub(super) track: Track,
+    pub(super) found: Found,
+}
+
+/// About what one more accessor takes in the JSON.
+const ACCESSOR: i64 = 128;
+
+/// The changes that are worth it.
+pub(super) fn changes(
+    asset: &mut Asset,
+    fixed: &Fixed,
+    tracks: Vec<Track>,
+    found: Vec<Option<Found>>,
+) -> Vec<Change> {
+    let pairs = tracks.into_iter().zip(found);
+    let all: Vec<Change> = pairs.filter_map(|(track, found)| Some(Change { track, found: found? })).collect();
+    let mut changes = worthwhile(asset, fixed, all);
+    keep_durations(asset, &mut changes);
+    changes.retain(|change| change.found.times.len() < change.track.times.len());
+    changes
+}
+
+/// The changes that save bytes: each by itself, its old times staying where others use
+/// them, and then all others of the same times together if these can go.
+fn worthwhile(asset: &Asset, fixed: &Fixed, all: Vec<Change>) -> Vec<Change> {
+    let mut users: BTreeMap<usize, usize> = BTreeMap::new();
+    for sampler in asset.root().animations.iter().flat_map(|animation| &animation.samplers) {
+        *users.entry(sampler.input.value()).or_default() += 1;
+    }
+    let mut groups: BTreeMap<usize, Vec<Change>> = BTreeMap::new();
+    for change in all {
+        groups.entry(change.track.input).or_default().push(change);
+    }
+    let mut written = HashSet::new();
+    let mut chosen = Vec::new();
+    for (input, group) in groups {
+        let alone = users.get(&input) == Some(&group.len()) && !fixed.accessors.contains(&input);
+        let mut rest = Vec::new();
+        for change in group {
+            if saved(&change, fixed, &mut written.clone()) > 0 {
+                saved(&change, fixed, &mut written);
+                chosen.push(change);
+            } else {
+                rest.push(change);
+            }
+        }
+        let mut with_rest = written.clone();
+        let times = rest.first().map_or(0, |change| 4 * change.track.times.len() as i64 + ACCESSOR);
+        let total: i64 = rest.iter().map(|change| saved(change, fixed, &mut with_rest)).sum();
+        if alone && total + times > 0 {
+            written = with_rest;
+            chosen.extend(rest);
+        }
+    }
+    chosen.sort_by_key(|change| (change.track.animation, change.track.sampler));
+    chosen
+}
+
+/// Bytes that a change saves if the old times stay; new times are written once.
+fn saved(change: &Change, fixed: &Fixed, written: &mut HashSet<Vec<u32>>) -> i64 {
+    let Change { track, found } = change;
+    let bytes = |numbers: usize, size: usize| (numbers * size) as i64;
+    let old = match fixed.accessors.contains(&track.output) {
+        true => 0,
+        false => bytes(track.values.len(), track.stored.component.size()),
+    };
+    let times = found.times.iter().map(|time| time.to_bits()).collect();
+    let times = if written.insert(times) { bytes(found.times.len(), 4) + ACCESSOR } else { 0 };
+    old - bytes(found.values.len(), found.stored.component.size()) - times
+}
+
+/// Lets a held value last to its clip's end where nothing else does.
+fn keep_durations(asset: &mut Asset, changes: &mut [Change]) {
+    for clip in asset.clips() {
+        let changed: BTreeSet<usize> = changes
+            .iter()
+            .filter(|change| change.track.animation == clip.animation)
+            .map(|change| change.track.sampler)
+            .collect();
+        let end = clip.duration;
+        let mut others = clip.channels.iter().filter(|channel| !changed.contains(&channel.sampler));
+        let lasts = |time: Option<&f32>| time.is_some_and(|&time| f64::from(time) >= end);
+        let kept = others.any(|channel| {
+            let last = asset.floats(channel.input, channel.keys - 1..channel.keys);
+            last.is_ok_and(|last| lasts(last.first()))
+        });
+        let mut mine: Vec<&mut Change> =
+            changes.iter_mut().filter(|change| change.track.animation == clip.animation).collect();
+        if kept || mine.iter().any(|change| lasts(change.found.times.last())) {
+            continue;
+        }
+        mine.retain(|change| lasts(change.track.times.last()));
+        let smallest = mine.into_iter().min_by_key(|change| change.found.values.len());
+        if let Some(change) = smallest {
+            change.found = change.found.clone().until(end as f32);
+        }
+    }
+}

@@ -1,0 +1,293 @@
+//! Some of a track's own keys, as they are stored: the longest reach from key to key.
+//!
+//! Between two neighbouring keys of the track both its playback and that of fewer keys
+//! are smooth, so that their distance there follows from what is known at these keys.
+
+use super::curves::{Cubic, hermite, least_length, length, slerp_rates, unit};
+use super::keys::{Allowed, Found};
+use super::track::Track;
+use crate::asset::play::{Interpolation, Property, slerp};
+
+/// Keys whose playback keeps what is allowed; all of them where none can go.
+pub(super) fn own_keys(track: &Track, allowed: &Allowed) -> Found {
+    if let Some(deviation) = still(track, allowed) {
+        return picked(track, &[0], deviation);
+    }
+    let (kept, deviation) = match track.interpolation {
+        Interpolation::Step => steps(track, allowed),
+        _ => longest_reach(track.times.len(), |from, to| strayed(track, allowed, from, to)),
+    };
+    picked(track, &kept, deviation)
+}
+
+fn picked(track: &Track, kept: &[usize], deviation: f64) -> Found {
+    // One key has no tangents to be played by.
+    let alone = kept.len() == 1 && track.is_cubic();
+    let key = |&k: &usize| if alone { track.value(k) } else { track.key(k) };
+    Found {
+        times: kept.iter().map(|&k| track.times[k]).collect(),
+        values: kept.iter().flat_map(key).copied().collect(),
+        stored: track.stored,
+        interpolation: if alone { Interpolation::Linear } else { track.interpolation },
+        deviation,
+    }
+}
+
+/// Float32 numbers of one straight line may each be off it by half a step: together by
+/// one, at most 2⁻²³ of the largest.
+const ROUNDING: f64 = 1.0 / (1 << 23) as f64;
+
+/// The same of rotations, degrees: four numbers, each within 2⁻²⁵.
+pub(super) const ROTATION_ROUNDING: f64 = 1.2e-5;
+
+/// The distance between a key's value and another, degrees or units.
+fn distance(track: &Track, key: usize, value: &[f64]) -> f64 {
+    match track.property {
+        Property::Rotation => {
+            let value = std::array::from_fn(|i| value.get(i).copied().unwrap_or(0.0));
+            unit(track.quat(key)).angle_to(unit(value)).to_degrees()
+        }
+        Property::MorphTargetWeights => off(track, key, value).fold(0.0, f64::max),
+        _ => off(track, key, value).map(|d| d * d).sum::<f64>().sqrt(),
+    }
+}
+
+fn off(track: &Track, key: usize, value: &[f64]) -> impl Iterator<Item = f64> {
+    track.value(key).iter().zip(value).map(|(&a, b)| (f64::from(a) - b).abs())
+}
+
+fn value(track: &Track, key: usize) -> Vec<f64> {
+    track.value(key).iter().map(|&x| f64::from(x)).collect()
+}
+
+/// How far playback leaves the first value, if it ends there and stays near it.
+fn still(track: &Track, allowed: &Allowed) -> Option<f64> {
+    let last = track.times.len() - 1;
+    let first = value(track, 0);
+    if track.interpolation == Interpolation::Step {
+        return None; // found in any case
+    }
+    let rounding = match track.property {
+        Property::Rotation => ROTATION_ROUNDING,
+        _ => 2.0 * ROUNDING * length_of(&first),
+    };
+    if distance(track, last, &first) > rounding {
+        return None;
+    }
+    if track.property == Property::Rotation && track.is_cubic() {
+        // Four numbers that change their sign on the way make a turn of it.
+        let alike = |k: usize| track.quat(k).iter().zip(&first).map(|(a, b)| a * b).sum::<f64>() > 0.0;
+        if !(0..=last).all(alike) {
+            return None;
+        }
+    }
+    let mut worst = 0.0f64;
+    for key in 0..=last {
+        worst = worst.max(distance(track, key, &first) + if key < last { bulge(track, key) } else { 0.0 });
+        if worst > allowed.tolerance.unwrap_or(ROUNDING * length_of(&first)) {
+            return None;
+        }
+    }
+    Some(worst)
+}
+
+/// How far playback after a key can be from both this key and the next, degrees or units.
+fn bulge(track: &Track, key: usize) -> f64 {
+    let h = track.time(key + 1) - track.time(key);
+    let tangents = (0..track.width).filter_map(|c| track.tangents(key, c));
+    let reach = tangents.map(|(out, into)| h / 3.0 * (out.abs() + into.abs())).map(|d| d * d).sum::<f64>();
+    match track.property {
+        Property::Rotation => (2.0 * (1.2 * reach.sqrt()).min(1.0).asin()).to_degrees(),
+        _ => reach.sqrt(),
+    }
+}
+
+fn length_of(v: &[f64]) -> f64 {
+    v.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// Keys of a held value, each until one is further from it than allowed.
+fn steps(track: &Track, allowed: &Allowed) -> (Vec<usize>, f64) {
+    let (mut kept, mut worst) = (vec![0], 0.0f64);
+    for key in 1..track.times.len() {
+        let held = kept[kept.len() - 1];
+        let off = match track.value(key) == track.value(held) {
+            true => 0.0,
+            false => distance(track, key, &value(track, held)),
+        };
+        if off > allowed.tolerance.unwrap_or(0.0) {
+            kept.push(key);
+        } else {
+            worst = worst.max(off);
+        }
+    }
+    (kept, worst)
+}
+
+/// From key to key as far as `strayed` says that an interval serves; it says how far
+/// playback then strays.
+fn longest_reach(count: usize, strayed: impl Fn(usize, usize) -> Option<f64>) -> (Vec<usize>, f64) {
+    let (mut kept, mut worst, mut from) = (vec![0], 0.0f64, 0);
+    while from + 1 < count {
+        let (mut good, mut deviation, mut step) = (from + 1, 0.0, 1);
+        let mut bad = count;
+        // Ever longer steps, then ever shorter ones.
+        while good + 1 < bad {
+            let to = (good + step).min(bad - 1);
+            match strayed(from, to) {
+                Some(off) => (good, deviation, step) = (to, off, 2 * step),
+                None => bad = to,
+            }
+            if bad < count {
+                step = ((bad - good) / 2).max(1);
+            }
+        }
+        worst = worst.max(deviation);
+        kept.push(good);
+        from = good;
+    }
+    (kept, worst)
+}
+
+/// How far playback from one key straight to another is from the track, degrees or
+/// units; none if further than allowed.
+fn strayed(track: &Track, allowed: &Allowed, from: usize, to: usize) -> Option<f64> {
+    match (track.property, track.is_cubic()) {
+        (Property::Rotation, false) => turned(track, allowed, from, to),
+        (_, false) => straight(track, allowed, from, to),
+        (_, true) => curved(track, allowed, from, to),
+    }
+}
+
+/// The way within `from..to` at a key.
+fn along(track: &Track, from: usize, to: usize, key: usize) -> f64 {
+    (track.time(key) - track.time(from)) / (track.time(to) - track.time(from))
+}
+
+/// Both ways are straight between keys: the largest distance is at one.
+fn straight(track: &Track, allowed: &Allowed, from: usize, to: usize) -> Option<f64> {
+    let (a, b) = (value(track, from), value(track, to));
+    let mut worst = 0.0f64;
+    for key in from + 1..to {
+        let u = along(track, from, to, key);
+        let there: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a + u * (b - a)).collect();
+        let fits = match allowed.tolerance {
+            Some(tolerance) => distance(track, key, &there) <= tolerance,
+            None => {
+                let steps = a.iter().zip(&b).map(|(a, b)| ROUNDING * a.abs().max(b.abs()));
+                off(track, key, &there).zip(steps).all(|(off, step)| off <= step)
+            }
+        };
+        if !fits {
+            return None;
+        }
+        worst = worst.max(distance(track, key, &there));
+    }
+    Some(worst)
+}
+
+/// Both ways are arcs between keys. With f half the angle between them, v the larger of
+/// their speeds and A the sum of their accelerations, which uneven lengths of quaternions
+/// cause, f″ ≥ −A − 2v² tan(f/2): as docs/math/deviation.md has it, f exceeds its ends by
+/// at most h²/8 · (A + 1.1 v² F) for a peak F up to 1.
+fn turned(track: &Track, allowed: &Allowed, from: usize, to: usize) -> Option<f64> {
+    let tolerance = allowed.tolerance?;
+    let (a, b) = (track.quat(from), track.quat(to));
+    let whole = unit(a).angle_to(unit(b)).to_degrees();
+    if allowed.max_step.is_some_and(|step| whole > step) {
+        return None;
+    }
+    let own = slerp_rates(a, b);
+    let (mut worst, mut at_start) = (0.0f64, 0.0);
+    for key in from..to {
+        let u = along(track, from, to, key + 1);
+        let at_end = match key + 1 < to {
+            true => distance(track, key + 1, &slerp(a, b, u)).to_radians() / 2.0,
+            false => 0.0,
+        };
+        let rates = slerp_rates(track.quat(key), track.quat(key + 1));
+        let share = u - along(track, from, to, key);
+        let speed = rates.speed.max(own.speed * share);
+        let acceleration = rates.acceleration + own.acceleration * share * share;
+        let room = 1.0 - 1.1 / 8.0 * speed * speed;
+        let peak = (at_end.max(at_start) + acceleration / 8.0) / room;
+        if room <= 0.0 || peak > 1.0 {
+            return None;
+        }
+        worst = worst.max((2.0 * peak).to_degrees());
+        if worst > tolerance {
+            return None;
+        }
+        at_start = at_end;
+    }
+    Some(worst)
+}
+
+/// Both ways are cubics between keys, and so is their difference: it is at most as large
+/// as at either end and 4/27 h of its slopes there. Of rotations the difference of the
+/// four numbers is seen from the least length on the way.
+fn curved(track: &Track, allowed: &Allowed, from: usize, to: usize) -> Option<f64> {
+    let whole = track.time(to) - track.time(from);
+    if track.property == Property::Rotation
+        && allowed
+            .max_step
+            .is_some_and(|step| unit(track.quat(from)).angle_to(unit(track.quat(to))).to_degrees() > step)
+    {
+        return None;
+    }
+    let mut worst = 0.0f64;
+    for key in from..to {
+        let h = track.time(key + 1) - track.time(key);
+        let (mut square, mut fits) = (0.0, true);
+        for c in 0..track.width {
+            let difference = difference(track, (from, to), key, c)?;
+            square += difference * difference;
+            let largest = track.number(from, c).abs().max(track.number(to, c).abs());
+            let slopes = track.tangents(from, c)?.0.abs().max(into(track, to, c).abs());
+            fits &= difference <= ROUNDING * largest.max(whole * slopes).max(h * slopes);
+        }
+        let off = match track.property {
+            Property::Rotation => angle(track, key, square.sqrt())?,
+            _ => square.sqrt(),
+        };
+        worst = worst.max(off);
+        if !allowed.tolerance.map_or(fits, |tolerance| worst <= tolerance) {
+            return None;
+        }
+    }
+    Some(worst)
+}
+
+/// The tangent into a key.
+fn into(track: &Track, key: usize, c: usize) -> f64 {
+    f64::from(track.key(key)[c])
+}
+
+/// A bound of the difference of one number after a key.
+fn difference(track: &Track, (from, to): (usize, usize), key: usize, c: usize) -> Option<f64> {
+    let whole = track.time(to) - track.time(from);
+    let out = track.tangents(from, c)?.0;
+    let at = |k: usize| {
+        let u = along(track, from, to, k);
+        hermite(track.number(from, c), out, into(track, to, c), track.number(to, c), u, whole)
+    };
+    let ((a, slope_a), (b, slope_b)) = (at(key), at(key + 1));
+    let (tangent_a, tangent_b) = track.tangents(key, c)?;
+    let ends = (a - track.number(key, c)).abs().max((b - track.number(key + 1, c)).abs());
+    let h = track.time(key + 1) - track.time(key);
+    Some(ends + 4.0 / 27.0 * h * ((slope_a - tangent_a).abs() + (slope_b - tangent_b).abs()))
+}
+
+/// The angle, degrees, that a difference of the four numbers after a key can make.
+fn angle(track: &Track, key: usize, difference: f64) -> Option<f64> {
+    let h = track.time(key + 1) - track.time(key);
+    let mut cubic: Cubic<4> = [[0.0; 4]; 4];
+    for c in 0..4 {
+        let (out, into) = track.tangents(key, c)?;
+        let (a, b) = (track.number(key, c), track.number(key + 1, c));
+        let points = [a, a + out * h / 3.0, b - into * h / 3.0, b];
+        (0..4).for_each(|i| cubic[i][c] = points[i]);
+    }
+    let sine = difference / least_length(&cubic);
+    (sine < 1.0 && length(&cubic[0]) > 0.0).then(|| (2.0 * sine.asin()).to_degrees())
+}
