@@ -26,6 +26,11 @@ pub const TOLERANCES: [f64; 3] = [0.1, 0.01, 0.001];
 /// blend quaternions and normalise near those that turn at constant speed.
 pub const MAX_STEP: f64 = 18.0;
 
+/// About how many keys are counted at most, in all or for each of the motion's own. A
+/// scheme can need any number: keys close in time make some turn thousands of times before
+/// a far next one.
+const MOST_KEYS: [usize; 2] = [100_000, 64];
+
 /// A time and a rotation in float32.
 const BYTES_PER_KEY: u64 = 4 + 16;
 
@@ -83,7 +88,8 @@ pub struct Jumps {
 pub struct KeysNeeded {
     /// How near, degrees.
     pub tolerance: f64,
-    /// Keys, at most [`MAX_STEP`] apart; none where float32 cannot keep the tolerance.
+    /// Keys, at most [`MAX_STEP`] apart; none where float32 cannot keep the tolerance, or
+    /// where it would take more than about a hundred thousand, and 64 for each key there is.
     pub keys: Option<usize>,
     /// Their times and rotations in a file.
     pub bytes: Option<u64>,
@@ -155,29 +161,33 @@ pub fn motion(motion: Motion, keys: &[Quat], loops: bool) -> Figures {
     let end = if loops { motion.at(times[times.len() - 1]) } else { keys[keys.len() - 1] };
     let key = |i: usize| if i + 1 == keys.len() { end } else { keys[i] };
     let mut peaks = [Peak { value: 0.0, time: times[0] }; 4];
-    let (mut squares, mut duration) = ([0.0; 2], 0.0);
+    // Integrals of the squares of speed and acceleration, of speed, and of the
+    // acceleration's root.
+    let (mut integrals, mut duration) = ([0.0; 4], 0.0);
     let nodes = quadrature::nodes();
     for piece in &pieces {
         let after = times.partition_point(|&t| t <= piece.start).clamp(1, times.len() - 1);
         let chord = Chord::new(key(after - 1), key(after), piece.at(0.0));
         peaks::raise(&mut peaks, piece, |u| measures(piece, &chord, u));
         for (u, weight) in nodes {
-            let State { velocity, acceleration, .. } = state(piece, u);
-            for (sum, vector) in squares.iter_mut().zip([velocity, acceleration]) {
-                *sum += weight * piece.duration() * vector.dot(vector);
+            let [speed, acceleration, ..] = measures(piece, &chord, u);
+            let values = [speed * speed, acceleration * acceleration, speed, acceleration.sqrt()];
+            for (integral, value) in integrals.iter_mut().zip(values) {
+                *integral += weight * piece.duration() * value;
             }
         }
         duration += piece.duration();
     }
     let [speed, acceleration, overshoot, stray] = peaks;
-    let rms = squares.map(|sum| (sum / duration).sqrt().to_degrees());
+    let [square_speed, square_acceleration, turned, bent] = integrals;
+    let rms = |square: f64| (square / duration).sqrt();
     Figures {
-        speed: Spread { largest: speed, rms: rms[0] },
-        acceleration: Spread { largest: acceleration, rms: rms[1] },
+        speed: Spread { largest: speed, rms: rms(square_speed) },
+        acceleration: Spread { largest: acceleration, rms: rms(square_acceleration) },
         jumps: jumps(&pieces, loops),
         overshoot,
         stray,
-        keys: keys_needed(motion),
+        keys: keys_needed(motion, |tolerance| expected_keys(tolerance, turned, bent)),
     }
 }
 
@@ -238,13 +248,26 @@ fn jumps(pieces: &[Piece], loops: bool) -> Jumps {
     Jumps { rotation, velocity, acceleration }
 }
 
-fn keys_needed(motion: Motion) -> [KeysNeeded; TOLERANCES.len()] {
+fn keys_needed(motion: Motion, expected: impl Fn(f64) -> f64) -> [KeysNeeded; TOLERANCES.len()] {
+    let most = MOST_KEYS[0].max(MOST_KEYS[1] * motion.times().len()) as f64;
     let curve = Turning::new(motion);
-    TOLERANCES.map(|tolerance| {
+    let count = |tolerance: f64| {
         let options = reduce::Options { max_step: Some(MAX_STEP), ..reduce::Options::new(tolerance) };
-        let keys = reduce::rotation(&curve, &options).ok().map(|keys| keys.times.len());
+        let keys = reduce::rotation(&curve, &options).ok()?;
+        Some(keys.times.len())
+    };
+    TOLERANCES.map(|tolerance| {
+        let keys = if expected(tolerance) <= most { count(tolerance) } else { None };
         KeysNeeded { tolerance, keys, bytes: keys.map(|keys| BYTES_PER_KEY * keys as u64) }
     })
+}
+
+/// About how many keys a tolerance takes, from the degrees turned in all and the integral
+/// of the acceleration's root. With accelerations of a, an interval of h seconds bends by
+/// a h²/8, which may be twice the tolerance. For what is no number, no end of keys.
+fn expected_keys(tolerance: f64, turned: f64, bent: f64) -> f64 {
+    let keys = (turned / MAX_STEP).max(bent / (16.0 * tolerance).sqrt());
+    if turned.is_finite() && bent.is_finite() { keys } else { f64::INFINITY }
 }
 
 impl Peak {

@@ -240,6 +240,40 @@ fn figures_agree_with_a_closer_look() {
     }
 }
 
+#[test]
+fn counts_are_about_as_expected() {
+    for scheme in [Scheme::CatmullRom, Scheme::BesselOverhauser, Scheme::Bessel] {
+        let keys = keys();
+        let curve = Motion::new(&UNEVEN, &keys, scheme, Ends::Natural);
+        let nodes = quadrature::nodes();
+        let places = pieces(&curve).into_iter().flat_map(|piece| nodes.map(|node| (piece, node)));
+        let (mut turned, mut bent) = (0.0, 0.0);
+        for (piece, (u, weight)) in places {
+            let State { velocity, acceleration, .. } = state(&piece, u);
+            let seconds = weight * piece.duration();
+            turned += seconds * velocity.length().to_degrees();
+            bent += seconds * acceleration.length().to_degrees().sqrt();
+        }
+        let needed = by(scheme, &UNEVEN, &keys).keys;
+        for KeysNeeded { tolerance, keys, .. } in needed {
+            let ratio = keys.unwrap() as f64 / expected_keys(tolerance, turned, bent);
+            // More by the ends of segments, the fewer the finer the tolerance.
+            assert!((0.95..1.35).contains(&ratio), "{} {tolerance}: {ratio}", scheme.name());
+        }
+    }
+}
+
+#[test]
+fn keys_without_end_are_not_counted() {
+    // Near 10⁸ degrees a second at first, and seconds to slow down in.
+    let (times, keys) = ([0.0, 1e-6, 2e-6, 3.0], turns(&[0.0, 100.0, 200.0, 0.0]));
+    let found = by(Scheme::Bessel, &times, &keys);
+    assert!(found.speed.largest.value > 1e6);
+    assert!(found.keys.iter().all(|needed| needed.keys.is_none() && needed.bytes.is_none()), "{found:?}");
+    assert!(by(Scheme::Slerp, &times, &keys).keys.iter().all(|needed| needed.keys.is_some()));
+    assert_eq!(expected_keys(0.1, f64::NAN, 1.0), f64::INFINITY);
+}
+
 /// All figures that are not counts, times left out.
 fn numbers(figures: &Figures) -> [f64; 9] {
     let Figures { speed, acceleration, jumps, overshoot, stray, .. } = figures;
