@@ -3,7 +3,7 @@
 //! Between two neighbouring keys of the track both its playback and that of fewer keys
 //! are smooth, so that their distance there follows from what is known at these keys.
 
-use super::curves::{Cubic, hermite, least_length, length, slerp_rates, unit};
+use super::curves::{cubic, hermite, least_length, slerp_rates, unit};
 use super::keys::{Allowed, Found};
 use super::track::Track;
 use crate::asset::play::{Interpolation, Property, slerp};
@@ -280,14 +280,7 @@ fn difference(track: &Track, (from, to): (usize, usize), key: usize, c: usize) -
 
 /// The angle, degrees, that a difference of the four numbers after a key can make.
 fn angle(track: &Track, key: usize, difference: f64) -> Option<f64> {
-    let h = track.time(key + 1) - track.time(key);
-    let mut cubic: Cubic<4> = [[0.0; 4]; 4];
-    for c in 0..4 {
-        let (out, into) = track.tangents(key, c)?;
-        let (a, b) = (track.number(key, c), track.number(key + 1, c));
-        let points = [a, a + out * h / 3.0, b - into * h / 3.0, b];
-        (0..4).for_each(|i| cubic[i][c] = points[i]);
-    }
-    let sine = difference / least_length(&cubic);
-    (sine < 1.0 && length(&cubic[0]) > 0.0).then(|| (2.0 * sine.asin()).to_degrees())
+    let least = least_length(&cubic(track, key));
+    let sine = difference / least;
+    (least > 0.0 && sine < 1.0).then(|| (2.0 * sine.asin()).to_degrees())
 }
