@@ -58,6 +58,13 @@ for wrap in "" --no-wrap; do
     --camera fixtures/paths/camera.dat,look-at=root --camera follow --camera keys \
     --camera fixtures/paths/bezier.dat,rotation=fixtures/paths/euler-bezier.dat
 done
+mkdir "$out/reduced"
+for tolerance in 0.1 0.001; do
+  "$dat2glb" reduce "$out/all/chain-even.glb" -o "$out/reduced/chain-$tolerance.glb" --tolerance "$tolerance" -q
+  "$dat2glb" reduce "$out/along.gltf" -o "$out/reduced/along-$tolerance.gltf" --tolerance "$tolerance" \
+    --tolerance-distance "$tolerance" -q
+  "$dat2glb" reduce "$out/scenery.glb" -o "$out/reduced/scenery-$tolerance.glb" --tolerance "$tolerance" -q
+done
 for kind in chain body flight bezier camera euler; do
   "$dat2glb" example "$kind" | "$dat2glb" convert - -o "$out/$kind.glb" -q
 done

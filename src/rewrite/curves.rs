@@ -20,19 +20,7 @@ impl<const N: usize> Cubics<N> {
     /// The curve through a track's keys; the track has N numbers to a value.
     pub(super) fn new(track: &Track) -> Cubics<N> {
         let knots: Vec<f64> = track.times.iter().map(|&t| f64::from(t)).collect();
-        let piece = |k: usize| {
-            let h = knots[k + 1] - knots[k];
-            let mut cubic = [[0.0; N]; 4];
-            for c in 0..N {
-                let ends = (track.number(k, c), track.number(k + 1, c));
-                let steady = (ends.1 - ends.0) / h;
-                let (out, into) = track.tangents(k, c).unwrap_or((steady, steady));
-                let points = [ends.0, ends.0 + out * h / 3.0, ends.1 - into * h / 3.0, ends.1];
-                (0..4).for_each(|i| cubic[i][c] = points[i]);
-            }
-            cubic
-        };
-        let pieces = (0..knots.len() - 1).map(piece).collect();
+        let pieces = (0..knots.len() - 1).map(|k| cubic(track, k)).collect();
         Cubics { knots, pieces }
     }
 
@@ -70,6 +58,18 @@ impl<const N: usize> Cubics<N> {
         let acceleration = 6.0 / (h * h) * second.iter().map(length).fold(0.0, f64::max);
         (Rates { speed, acceleration }, b)
     }
+}
+
+/// A track's way after a key.
+pub(super) fn cubic<const N: usize>(track: &Track, key: usize) -> Cubic<N> {
+    let h = track.time(key + 1) - track.time(key);
+    let points: [[f64; 4]; N] = std::array::from_fn(|c| {
+        let (a, b) = (track.number(key, c), track.number(key + 1, c));
+        let steady = (b - a) / h;
+        let (out, into) = track.tangents(key, c).unwrap_or((steady, steady));
+        [a, a + out * h / 3.0, b - into * h / 3.0, b]
+    });
+    std::array::from_fn(|i| points.map(|of_one| of_one[i]))
 }
 
 /// A Bézier curve's value.

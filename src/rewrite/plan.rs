@@ -49,18 +49,20 @@ fn worthwhile(asset: &Asset, fixed: &Fixed, all: Vec<Change>) -> Vec<Change> {
         let alone = users.get(&input) == Some(&group.len()) && !fixed.accessors.contains(&input);
         let mut rest = Vec::new();
         for change in group {
-            if saved(&change, fixed, &mut written.clone()) > 0 {
-                saved(&change, fixed, &mut written);
+            let times = bits(&change);
+            if saved(&change, fixed, written.contains(&times)) > 0 {
+                written.insert(times);
                 chosen.push(change);
             } else {
                 rest.push(change);
             }
         }
-        let mut with_rest = written.clone();
+        let mut new = HashSet::new();
         let times = rest.first().map_or(0, |change| 4 * change.track.times.len() as i64 + ACCESSOR);
-        let total: i64 = rest.iter().map(|change| saved(change, fixed, &mut with_rest)).sum();
+        let mut shared = |times: Vec<u32>| written.contains(&times) || !new.insert(times);
+        let total: i64 = rest.iter().map(|change| saved(change, fixed, shared(bits(change)))).sum();
         if alone && total + times > 0 {
-            written = with_rest;
+            written.extend(new);
             chosen.extend(rest);
         }
     }
@@ -68,16 +70,21 @@ fn worthwhile(asset: &Asset, fixed: &Fixed, all: Vec<Change>) -> Vec<Change> {
     chosen
 }
 
-/// Bytes that a change saves if the old times stay; new times are written once.
-fn saved(change: &Change, fixed: &Fixed, written: &mut HashSet<Vec<u32>>) -> i64 {
+/// New times, told apart by their bits.
+fn bits(change: &Change) -> Vec<u32> {
+    change.found.times.iter().map(|time| time.to_bits()).collect()
+}
+
+/// Bytes that a change saves if the old times stay; `shared` are new times that are
+/// written already.
+fn saved(change: &Change, fixed: &Fixed, shared: bool) -> i64 {
     let Change { track, found } = change;
     let bytes = |numbers: usize, size: usize| (numbers * size) as i64;
     let old = match fixed.accessors.contains(&track.output) {
         true => 0,
         false => bytes(track.values.len(), track.stored.component.size()),
     };
-    let times = found.times.iter().map(|time| time.to_bits()).collect();
-    let times = if written.insert(times) { bytes(found.times.len(), 4) + ACCESSOR } else { 0 };
+    let times = if shared { 0 } else { bytes(found.times.len(), 4) + ACCESSOR };
     old - bytes(found.values.len(), found.stored.component.size()) - times
 }
 

@@ -3,7 +3,7 @@
 //! Between two neighbouring keys of the track both its playback and that of fewer keys
 //! are smooth, so that their distance there follows from what is known at these keys.
 
-use super::curves::{Cubic, hermite, least_length, length, slerp_rates, unit};
+use super::curves::{cubic, hermite, least_length, slerp_rates, unit};
 use super::keys::{Allowed, Found};
 use super::track::Track;
 use crate::asset::play::{Interpolation, Property, slerp};
@@ -280,14 +280,107 @@ fn difference(track: &Track, (from, to): (usize, usize), key: usize, c: usize) -
 
 /// The angle, degrees, that a difference of the four numbers after a key can make.
 fn angle(track: &Track, key: usize, difference: f64) -> Option<f64> {
-    let h = track.time(key + 1) - track.time(key);
-    let mut cubic: Cubic<4> = [[0.0; 4]; 4];
-    for c in 0..4 {
-        let (out, into) = track.tangents(key, c)?;
-        let (a, b) = (track.number(key, c), track.number(key + 1, c));
-        let points = [a, a + out * h / 3.0, b - into * h / 3.0, b];
-        (0..4).for_each(|i| cubic[i][c] = points[i]);
+    let least = least_length(&cubic(track, key));
+    let sine = difference / least;
+    (least > 0.0 && sine < 1.0).then(|| (2.0 * sine.asin()).to_degrees())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::track::Stored;
+    use super::*;
+
+    /// A track of 33 keys, a 32nd of a second apart.
+    fn track(property: Property, interpolation: Interpolation, value: impl Fn(f64) -> Vec<f64>) -> Track {
+        let times: Vec<f32> = (0..33).map(|i| i as f32 / 32.0).collect();
+        let values: Vec<f32> = times.iter().flat_map(|&t| value(f64::from(t))).map(|x| x as f32).collect();
+        let cubic = interpolation == Interpolation::CubicSpline;
+        let width = values.len() / times.len() / if cubic { 3 } else { 1 };
+        Track {
+            animation: 0,
+            sampler: 0,
+            property,
+            interpolation,
+            input: 0,
+            output: 1,
+            times,
+            values,
+            width,
+            stored: Stored::FLOATS,
+        }
     }
-    let sine = difference / least_length(&cubic);
-    (sine < 1.0 && length(&cubic[0]) > 0.0).then(|| (2.0 * sine.asin()).to_degrees())
+
+    fn allowed(tolerance: Option<f64>) -> Allowed {
+        Allowed { tolerance, max_step: None, on_curve: false }
+    }
+
+    #[test]
+    fn longest_reach_is_the_longest() {
+        for reach in 1..12 {
+            let (kept, worst) = longest_reach(40, |a, b| (b - a <= reach).then_some((b - a) as f64));
+            assert!(kept.windows(2).all(|pair| pair[1] - pair[0] == reach || pair[1] == 39), "{kept:?}");
+            assert_eq!((kept[0], kept[kept.len() - 1]), (0, 39));
+            assert_eq!(worst, if reach == 1 { 0.0 } else { reach as f64 });
+        }
+    }
+
+    #[test]
+    fn one_cubic_in_many_pieces_is_one_again() {
+        // x = t³ − t, exact to the tangents.
+        let piece = |t: f64| vec![3.0 * t * t - 1.0, t.powi(3) - t, 3.0 * t * t - 1.0];
+        let track = track(Property::MorphTargetWeights, Interpolation::CubicSpline, piece);
+        assert_eq!(own_keys(&track, &allowed(None)).times, [0.0, 1.0]);
+        // Its last value is its first, but it does not rest there.
+        assert!(still(&track, &allowed(Some(0.1))).is_none());
+        assert!(still(&track, &allowed(Some(0.5))).is_some());
+    }
+
+    #[test]
+    fn cubic_rotations_are_bounded_by_more_than_their_keys() {
+        let turn = |t: f64| {
+            let (sin, cos) = (0.8 * t).sin_cos();
+            let (fast, slow) = (0.8 * cos, -0.8 * sin);
+            [[fast, 0.0, 0.0, slow], [sin, 0.0, 0.0, cos], [fast, 0.0, 0.0, slow]].concat()
+        };
+        let track = track(Property::Rotation, Interpolation::CubicSpline, turn);
+        let found = own_keys(&track, &allowed(Some(0.01)));
+        assert!((3..12).contains(&found.times.len()), "{:?}", found.times);
+        assert!(found.deviation <= 0.01);
+        // Hermite's error on an arc of φ half radians is about φ⁴/384, twice that in angle.
+        let arc = f64::from(found.times[1]) * 0.8;
+        assert!(found.deviation > (arc.powi(4) / 384.0 * 2.0).to_degrees() * 0.5);
+    }
+
+    #[test]
+    fn held_values_keep_their_keys() {
+        let track = track(Property::Scale, Interpolation::Step, |t| vec![(4.0 * t).floor(); 3]);
+        let found = own_keys(&track, &allowed(None));
+        assert_eq!((found.times, found.deviation), (vec![0.0, 0.25, 0.5, 0.75, 1.0], 0.0));
+        let found = own_keys(&track, &allowed(Some(1.8)));
+        assert_eq!((found.times, found.deviation), (vec![0.0, 0.5, 1.0], 3f64.sqrt()));
+    }
+
+    #[test]
+    fn uneven_lengths_of_quaternions_are_seen() {
+        // As 8-bit codes: lengths differ by a part in a hundred.
+        let turn = |t: f64| {
+            let (sin, cos) = (0.4 * t).sin_cos();
+            [sin, 0.0, 0.0, cos].map(|x| (x * 127.0).round() / 127.0).to_vec()
+        };
+        let track = track(Property::Rotation, Interpolation::Linear, turn);
+        let found = own_keys(&track, &allowed(Some(0.6)));
+        assert!(found.times.len() < 33 && found.deviation <= 0.6);
+        let keys: Vec<[f64; 4]> =
+            found.values.chunks(4).map(|q| std::array::from_fn(|i| f64::from(q[i]))).collect();
+        for i in 0..640 {
+            let t = f64::from(i) / 640.0;
+            let at = |times: &[f32], quat: &dyn Fn(usize) -> [f64; 4]| {
+                let k = times.partition_point(|&time| f64::from(time) <= t).min(times.len() - 1) - 1;
+                let (a, b) = (f64::from(times[k]), f64::from(times[k + 1]));
+                unit(slerp(quat(k), quat(k + 1), (t - a) / (b - a)))
+            };
+            let off = at(&track.times, &|k| track.quat(k)).angle_to(at(&found.times, &|k| keys[k]));
+            assert!(off.to_degrees() <= found.deviation + 1e-9, "{t}: {off} {}", found.deviation);
+        }
+    }
 }
