@@ -152,6 +152,10 @@ fn track_figures(clip: &Clip, track: usize, scheme: Option<Scheme>, ends: Ends) 
     motion(Motion::new(times, rotations, scheme, ends), rotations, ends == Ends::Closed)
 }
 
+/// In how many parts each piece is integrated: some schemes swing round within a fraction
+/// of a segment.
+const PARTS: u32 = 8;
+
 /// The figures of a motion. `keys` are the rotations at its times, with continuous signs;
 /// a motion that `loops` also meets itself where its end runs into its start.
 pub fn motion(motion: Motion, keys: &[Quat], loops: bool) -> Figures {
@@ -169,11 +173,11 @@ pub fn motion(motion: Motion, keys: &[Quat], loops: bool) -> Figures {
         let after = times.partition_point(|&t| t <= piece.start).clamp(1, times.len() - 1);
         let chord = Chord::new(key(after - 1), key(after), piece.at(0.0));
         peaks::raise(&mut peaks, piece, |u| measures(piece, &chord, u));
-        for (u, weight) in nodes {
-            let [speed, acceleration, ..] = measures(piece, &chord, u);
+        for (part, (u, weight)) in (0..PARTS).flat_map(|part| nodes.map(|node| (f64::from(part), node))) {
+            let [speed, acceleration, ..] = measures(piece, &chord, (part + u) / f64::from(PARTS));
             let values = [speed * speed, acceleration * acceleration, speed, acceleration.sqrt()];
             for (integral, value) in integrals.iter_mut().zip(values) {
-                *integral += weight * piece.duration() * value;
+                *integral += weight * piece.duration() * value / f64::from(PARTS);
             }
         }
         duration += piece.duration();
