@@ -42,6 +42,12 @@ mod tests {
     use super::*;
 
     #[test]
+    fn uris_are_escaped_and_names_made_of_content() {
+        assert_eq!(percent_encoded("clip 1%ä.bin"), "clip%201%25%C3%A4.bin");
+        assert_eq!(bin_file_name(Path::new("a/b.c.gltf"), "00"), "b.c.00.bin");
+    }
+
+    #[test]
     fn only_unused_bins_of_the_same_name_go() {
         let folder = tempfile::tempdir().unwrap();
         let gltf = folder.path().join("a b.gltf");

@@ -1,6 +1,7 @@
 //! `dat2glb convert`: every input through all stages, one after another.
 
 use super::args::Convert;
+use super::bins::{bin_file_name, percent_encoded, remove_old_bins};
 use super::camera::CameraSpec;
 use super::check::{judged, print_document};
 use super::exit::{Exit, Failure, shown};
@@ -14,7 +15,6 @@ use dat2glb::convert::{ClipFacts, Options, Plan};
 use dat2glb::diff::{self, Stale};
 use dat2glb::moves::{Ground, Shape};
 use dat2glb::report::{Format, Run, Subject};
-use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Cursor, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -285,7 +285,7 @@ fn write(
         output.commit()?;
     }
     if is_gltf(&job.output) {
-        remove_old_bins(&job.output, &bin_name);
+        remove_old_bins(&job.output, std::slice::from_ref(&bin_name));
     }
     let summary = Summary::new(name, &job.output, ground, &facts, bytes, &warnings, started.elapsed());
     summary.print(options.json, options.quiet)
@@ -421,47 +421,4 @@ fn picture(asset: &mut Asset, name: &Path, quiet: bool) -> Result<Vec<u8>, Failu
 #[cfg(not(feature = "render"))]
 fn picture(_: &mut Asset, name: &Path, _quiet: bool) -> Result<Vec<u8>, Failure> {
     Err(Failure::usage(format!("{}: this build has no renderer", name.display())))
-}
-
-/// `clip.0123456789abcdef.bin` for `clip.gltf`.
-fn bin_file_name(gltf: &Path, hash: &str) -> String {
-    format!("{}.{hash}.bin", gltf.file_stem().unwrap_or(OsStr::new("clip")).to_string_lossy())
-}
-
-/// Removes the .bin files of earlier conversions to the same .gltf: no file refers to
-/// them any more. That one cannot be removed is no reason to fail.
-fn remove_old_bins(gltf: &Path, current: &str) {
-    let stem = gltf.file_stem().unwrap_or(OsStr::new("clip")).to_string_lossy();
-    let folder = gltf.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        let name = entry.file_name().to_string_lossy().into_owned();
-        let rest = name.strip_prefix(&*stem).and_then(|rest| rest.strip_prefix('.'));
-        let hash = rest.and_then(|rest| rest.strip_suffix(".bin"));
-        let ours = hash.is_some_and(|hash| hash.len() == 16 && hash.bytes().all(|b| b.is_ascii_hexdigit()));
-        if ours && name != current {
-            let _ = fs::remove_file(entry.path());
-        }
-    }
-}
-
-/// A file name as a relative URI (RFC 3986): all but unreserved characters escaped.
-fn percent_encoded(name: &str) -> String {
-    let plain = |b: u8| b.is_ascii_alphanumeric() || b"-._~".contains(&b);
-    let escaped = |b: u8| if plain(b) { char::from(b).to_string() } else { format!("%{b:02X}") };
-    name.bytes().map(escaped).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn uris_are_escaped() {
-        assert_eq!(percent_encoded("clip 1%ä.bin"), "clip%201%25%C3%A4.bin");
-    }
-
-    #[test]
-    fn bins_are_named_by_content() {
-        assert_eq!(bin_file_name(Path::new("a/b.c.gltf"), "00"), "b.c.00.bin");
-    }
 }

@@ -47,6 +47,7 @@ pub(super) fn fewest<C: Curve>(
         if ends.is_empty() {
             return Err(Stuck(f64::from(beam[0].1.key().time)));
         }
+        spread(&mut ends, &nodes, stops);
         thin_out(&mut ends, limits.tolerance);
         let mut looks: Vec<(Node<C::Value>, Ahead<C>)> = Vec::with_capacity(ends.len());
         for end in ends {
@@ -75,6 +76,21 @@ fn look<'a, C: Curve>(
     let ramps = curve.curve.ramps().iter().any(|&(from, to)| from as f32 <= key.time && key.time < to as f32);
     let limits = if ramps { Limits { step: f64::INFINITY, ..limits } } else { limits };
     Ahead::new(curve, limits, key, (stops[next], next + 1 == stops.len()), guess)
+}
+
+/// Some players merge keys that are closer, seconds.
+const APART: f64 = 1e-3;
+
+/// Leaves out ends shortly before the next stop, where there are others.
+fn spread<V: Value>(ends: &mut Vec<Node<V>>, nodes: &[Node<V>], stops: &[f32]) {
+    let crowded = |end: &Node<V>| {
+        let next = stops[stops.partition_point(|&stop| stop <= end.key.time).min(stops.len() - 1)];
+        let (left, way) = (next - end.key.time, next - nodes[end.before].key.time);
+        left > 0.0 && f64::from(left) < APART && f64::from(way) > 2.0 * APART
+    };
+    if ends.iter().any(|end| !crowded(end)) {
+        ends.retain(|end| !crowded(end));
+    }
 }
 
 /// Leaves the latest ends, and of those that are nearly the same one.
