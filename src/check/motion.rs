@@ -282,7 +282,7 @@ fn curve_of(clip: &Clip, recipe: Option<&Recipe>, given: Given) -> Result<Option
     let shape = recipe.map_or_else(|| Ok(Shape::default()), Recipe::shape).map_err(|word| unknown(&word))?;
     let shape = Shape { ends: given.ends.unwrap_or(shape.ends), ..shape };
     let suffixed = |scheme: &Scheme| name(clip).ends_with(&format!("-{}", scheme.name()));
-    let named_after = Scheme::ALL.iter().copied().filter(suffixed).max_by_key(|scheme| scheme.name().len());
+    let named_after = Scheme::EVERY.iter().copied().filter(suffixed).max_by_key(|scheme| scheme.name().len());
     let meant = said.is_some() || named_after.is_none_or(|named| named == scheme);
     Ok(meant.then_some((scheme, shape)))
 }
@@ -340,8 +340,11 @@ fn node(
         return Ok(None);
     };
     let stream = ground.stream();
-    let keys = keys(ground.knots(), stream, *copy, clip.duration);
-    let turned = |t: f64| Quat::to_xyzw(stream.rotation(stream.moment(*copy, t), |t| a_move.turned(t)));
+    let mut keys = keys(ground.knots(), stream, *copy, clip.duration);
+    if matches!(a_move, Move::Keys(motion) if motion.is_step()) {
+        keys.iter_mut().for_each(|t| *t = f64::from(*t as f32));
+    }
+    let turned = |t: f64| Quat::to_xyzw(stream.rotation(stream.moment(*copy, t), |t| turned(a_move, t)));
     let (property, unit, difference) = match a_move {
         Move::Keys(_) | Move::Attitude(_) => {
             ("rotation", "°", against::rotation(asset, clip, index, &keys, &turned)?)
@@ -364,6 +367,19 @@ fn node(
         report.add(Code::MotionDiffers, place, message);
     }
     Ok(Some(NodeMotion { node: node.clone(), property, limit: *limit, difference }))
+}
+
+/// The rotation at a time. What is held until a key changes where the file's float32 time
+/// has the key.
+fn turned(a_move: &Move, t: f64) -> Quat {
+    match a_move {
+        Move::Keys(motion) if motion.is_step() => {
+            let times = motion.times();
+            let next = times.partition_point(|&key| key as f32 <= t as f32);
+            motion.at(times[next.saturating_sub(1)])
+        }
+        other => other.turned(t),
+    }
 }
 
 /// When a copy passes the knots of the way, in order. The file ends at a float32 time:

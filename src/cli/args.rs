@@ -755,7 +755,7 @@ fn named<T: Clone + Send + Sync + 'static>(
 }
 
 fn scheme_names() -> Vec<(&'static str, &'static str)> {
-    Scheme::ALL.iter().map(|scheme| (scheme.name(), scheme.summary())).collect()
+    Scheme::EVERY.iter().map(|scheme| (scheme.name(), scheme.summary())).collect()
 }
 
 fn scheme() -> ValueParser {
@@ -765,9 +765,9 @@ fn scheme() -> ValueParser {
 fn schemes() -> ValueParser {
     let from_name = |name: &str| match name {
         "all" => Some(Schemes(Scheme::ALL)),
-        name => Scheme::ALL.iter().position(|s| s.name() == name).map(|i| Schemes(&Scheme::ALL[i..=i])),
+        name => Scheme::EVERY.iter().position(|s| s.name() == name).map(|i| Schemes(&Scheme::EVERY[i..=i])),
     };
-    named(from_name, scheme_names().into_iter().chain([("all", "every one of these")]).collect())
+    named(from_name, scheme_names().into_iter().chain([("all", "every one of these but step")]).collect())
 }
 
 fn ends() -> ValueParser {

@@ -44,6 +44,9 @@ pub enum Error {
         /// Whether there are schemes to leave out.
         several_schemes: bool,
     },
+    /// Copies of what is held.
+    #[error("copies of poses that are held (--scheme step) cannot be made; leave out --repeat")]
+    HeldCopies,
     /// A tolerance that cannot be kept.
     #[error("{error}{}", advice_on_coding(*.reserve))]
     Fewest {

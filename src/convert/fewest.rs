@@ -2,10 +2,13 @@
 
 use super::Error;
 use super::facts::Seen;
+use crate::curve::Motion;
 use crate::moves::{Ground, Move, Mover, Turn};
 use crate::reduce::{self, Attitude, Facts, Travelling, Turning};
-use crate::sample::{Encoding, Steps, TrackFacts, code};
+use crate::sample::{self, Encoding, Steps, Timeline, TrackFacts, Writing, code};
+use crate::write::Interpolation;
 use rayon::prelude::*;
+use std::convert::Infallible;
 
 /// What is asked for instead of a rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +34,10 @@ impl Fewest {
 pub(super) struct Chosen {
     pub(super) times: Vec<f32>,
     pub(super) values: Values,
-    pub(super) facts: Facts,
+    pub(super) facts: TrackFacts,
+    /// How far playback is from the input's keys, where they were moved.
+    pub(super) keys_moved: Option<f64>,
+    pub(super) interpolation: Interpolation,
 }
 
 #[derive(Clone, Debug)]
@@ -40,16 +46,22 @@ pub(super) enum Values {
     Places(Vec<[f32; 3]>),
 }
 
+/// What is known of chosen keys, as samplers say it.
+fn known(facts: &Facts) -> TrackFacts {
+    let Facts { deviation, nlerp, proven, largest_step, .. } = *facts;
+    TrackFacts {
+        deviation: proven.then_some(deviation),
+        nlerp: proven.then_some(nlerp),
+        measured: (!proven).then_some(deviation),
+        steps: Steps { large: 0, worst: largest_step, at: 0.0 },
+    }
+}
+
 impl Chosen {
-    /// What is known of a rotation, as samplers say it.
-    pub(super) fn track(&self) -> TrackFacts {
-        let Facts { deviation, nlerp, proven, largest_step, .. } = self.facts;
-        TrackFacts {
-            deviation: proven.then_some(deviation),
-            nlerp: proven.then_some(nlerp),
-            measured: (!proven).then_some(deviation),
-            steps: Steps { large: 0, worst: largest_step, at: 0.0 },
-        }
+    /// Keys for LINEAR playback, by what the search found out.
+    fn new(times: Vec<f32>, values: Values, facts: &Facts) -> Chosen {
+        let keys_moved = matches!(values, Values::Rotations(_)).then_some(facts.keys_moved);
+        Chosen { times, values, facts: known(facts), keys_moved, interpolation: Interpolation::Linear }
     }
 
     /// Holds the last value until `end`.
@@ -127,11 +139,10 @@ pub(super) fn seen(all: &[Chosen]) -> Seen {
     for chosen in all {
         match chosen.values {
             Values::Rotations(_) => {
-                seen.tracks.push(chosen.track());
-                let moved = chosen.facts.keys_moved;
-                seen.keys_moved = Some(seen.keys_moved.map_or(moved, |worst| worst.max(moved)));
+                seen.tracks.push(chosen.facts);
+                seen.keys_moved = seen.keys_moved.into_iter().chain(chosen.keys_moved).reduce(f64::max);
             }
-            Values::Places(_) => seen.distances.push(chosen.facts.deviation),
+            Values::Places(_) => seen.distances.extend(chosen.facts.deviation),
         }
     }
     seen
@@ -177,23 +188,71 @@ fn chosen(
     };
     let rotations = |keys: reduce::Keys<4>| {
         let keys = if coded { recoded(keys, encoding, reserve) } else { keys };
-        Chosen { times: keys.times, values: Values::Rotations(keys.values), facts: keys.facts }
+        Chosen::new(keys.times, Values::Rotations(keys.values), &keys.facts)
     };
     let chosen = match a_move {
+        Move::Keys(motion) if motion.is_step() => return Ok(held(motion, encoding)),
         Move::Keys(motion) => reduce::rotation(&Turning::new(motion.clone()), &options).map(rotations),
         Move::Attitude(Turn { at, knots, ramps }) => {
             reduce::rotation(&Attitude::new(at, (0.0, end), knots, ramps), &options).map(rotations)
         }
         Move::Travel(travel) => {
             let curve = Travelling::new(travel.as_ref(), (0.0, end), travel.jumps());
-            reduce::numbers(&curve, &options).map(|keys| Chosen {
-                times: keys.times,
-                values: Values::Places(keys.values),
-                facts: keys.facts,
-            })
+            reduce::numbers(&curve, &options)
+                .map(|keys| Chosen::new(keys.times, Values::Places(keys.values), &keys.facts))
         }
     };
     chosen.map(Chosen::wait).map_err(|error| Error::Fewest { error, reserve: options.reserve })
+}
+
+/// The moves of an object of which some are held from key to key: those by their keys, the
+/// others by the samples of a timeline.
+pub(super) fn held_and_sampled<M>(moves: &[(M, Move)], timeline: &Timeline, writing: Writing) -> Vec<Chosen> {
+    let times: Vec<f32> = (0..timeline.chunks()).flat_map(|chunk| timeline.chunk(chunk).1).collect();
+    let one = |(_, a_move): &(M, Move)| match a_move {
+        Move::Keys(motion) if motion.is_step() => held(motion, writing.encoding),
+        other => sampled(other, timeline, &times, writing),
+    };
+    moves.iter().map(one).collect()
+}
+
+/// A motion that is held: its keys as they are.
+fn held(motion: &Motion, encoding: Encoding) -> Chosen {
+    let mut written: Vec<[f32; 4]> = Vec::with_capacity(motion.times().len());
+    let mut off: f64 = 0.0;
+    for &t in motion.times() {
+        let key = motion.at(t);
+        let numbers = encoding.numbers(key);
+        off = off.max(sample::written(numbers).angle_to(key).to_degrees());
+        written.push(numbers);
+    }
+    let facts = TrackFacts { deviation: Some(off), nlerp: Some(off), ..TrackFacts::default() };
+    let times = motion.times().iter().map(|&t| t as f32).collect();
+    let (values, interpolation) = (Values::Rotations(written), Interpolation::Step);
+    Chosen { times, values, facts, keys_moved: None, interpolation }.wait()
+}
+
+/// The samples of a timeline, in memory.
+fn sampled(a_move: &Move, timeline: &Timeline, times: &[f32], writing: Writing) -> Chosen {
+    let (mut turns, mut places) = (Vec::new(), Vec::new());
+    let mut facts = TrackFacts::default();
+    if let Some(rotation) = a_move.rotation() {
+        let all = sample::rotations(&[rotation], timeline, writing, |chunk| {
+            turns.extend_from_slice(chunk);
+            Ok::<(), Infallible>(())
+        });
+        facts = all.map_or(facts, |all| all[0]);
+    }
+    if let Some(travel) = a_move.travel() {
+        let distance = sample::translations(travel, timeline, |chunk| {
+            places.extend_from_slice(chunk);
+            Ok::<(), Infallible>(())
+        });
+        facts.deviation = distance.ok().filter(|_| writing.bound);
+    }
+    let values = if turns.is_empty() { Values::Places(places) } else { Values::Rotations(turns) };
+    let times = times.to_vec();
+    Chosen { times, values, facts, keys_moved: None, interpolation: Interpolation::Linear }
 }
 
 /// What coding adds to a playback's error: between two keys, each off by at most the

@@ -162,7 +162,8 @@ impl<'p> Layout<'p> {
         };
         let count = times.data.count;
         let offset = self.add(clip, Content::Chosen(&chosen.values), count * self.size(a_move));
-        self.channel(node, a_move, times, Data { offset, count })
+        let channel = self.channel(node, a_move, times, Data { offset, count });
+        Channel { interpolation: chosen.interpolation, ..channel }
     }
 
     /// How many rotations and places are written.

@@ -93,7 +93,23 @@ enum When<'a> {
 impl<'a> ClipPlan<'a> {
     fn new(ground: &'a Ground<'a>, scheme: Scheme, options: &Options) -> Result<ClipPlan<'a>, Unsampled> {
         let (object, cameras) = (ground.moves(scheme), ground.camera_moves(scheme));
+        let held = |(_, a_move): &(Mover, Move)| matches!(a_move, Move::Keys(motion) if motion.is_step());
+        let some_are_held = object.iter().any(held);
+        if some_are_held && ground.stream().count > 1 {
+            return Err(Error::HeldCopies.into());
+        }
         let when = match &options.sampling {
+            &Sampling::Rate { fps, key_times } if some_are_held => {
+                let timeline = ground.timeline(scheme, fps, key_times)?;
+                let cameras_at = ground.camera_timeline(fps, key_times)?;
+                When::Chosen {
+                    object: fewest::held_and_sampled(&object, &timeline, options.writing),
+                    cameras: match &cameras_at {
+                        Some(timeline) => fewest::held_and_sampled(&cameras, timeline, options.writing),
+                        None => Vec::new(),
+                    },
+                }
+            }
             &Sampling::Rate { fps, key_times } => When::Grid {
                 object: ground.timeline(scheme, fps, key_times)?,
                 cameras: ground.camera_timeline(fps, key_times)?,

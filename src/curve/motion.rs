@@ -132,6 +132,11 @@ impl<'a> Motion<'a> {
         self.track.times
     }
 
+    /// Whether it is held from key to key.
+    pub fn is_step(&self) -> bool {
+        matches!(&self.course, Course::Scheme(scheme, ..) if scheme.is_step())
+    }
+
     /// Where the ramp of a jump begins, if this motion has one.
     pub fn ramp(&self) -> Option<f64> {
         self.holds().then(|| ramp_start(self.track.times[0], self.track.times[1]))

@@ -22,6 +22,9 @@ macro_rules! schemes {
             /// Every scheme that LINEAR samples can show, in the order of the documentation.
             pub const ALL: &'static [Scheme] = &[$(Scheme::$listed,)*];
 
+            /// The same, and those that only STEP samples can show.
+            pub const EVERY: &'static [Scheme] = &[$(Scheme::$name,)*];
+
             /// The name by which users choose it.
             pub fn name(self) -> &'static str {
                 match self { $(Scheme::$name => <$rule as Rule>::NAME,)* }
@@ -97,6 +100,6 @@ impl Scheme {
 
     /// The scheme of a name, if there is one.
     pub fn from_name(name: &str) -> Option<Scheme> {
-        Scheme::ALL.iter().copied().find(|scheme| scheme.name() == name)
+        Scheme::EVERY.iter().copied().find(|scheme| scheme.name() == name)
     }
 }

@@ -13,6 +13,7 @@ mod timeline;
 pub(crate) mod translations;
 pub(crate) mod worst;
 
+pub(crate) use deviation::written;
 pub use encoding::{Encoding, code};
 pub use fps::{Fps, NotARate};
 pub use rotations::{Rotation, Steps, TrackFacts, Writing, rotations};

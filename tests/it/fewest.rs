@@ -175,3 +175,31 @@ fn without_a_bound_nothing_is_stated() {
     let checked = run(["check", text(&output), "--against", text(&input)]).exits(0);
     assert!(!checked.out().contains("allowed"), "{}", checked.out());
 }
+
+#[test]
+fn held_poses_are_steps_with_a_key_each() {
+    let (_folder, output) = output();
+    let (input, flight) = (keyframes("chain-uneven"), fixtures().join("paths/flight.dat"));
+    for (flags, interpolations) in [
+        (&["--scheme", "step"][..], vec!["STEP"; 4]),
+        (&["--scheme", "step", "--tolerance", "0.1", "--quantize"], vec!["STEP"; 4]),
+        (&["--scheme", "step", "--path", text(&flight)], vec!["STEP", "STEP", "STEP", "STEP", "LINEAR"]),
+    ] {
+        convert(&input, &output, flags);
+        let mut asset = open(&output);
+        let channels = asset.clips().remove(0).channels;
+        let found: Vec<String> =
+            channels.iter().map(|channel| format!("{:?}", channel.interpolation).to_uppercase()).collect();
+        assert_eq!(found, interpolations);
+        assert!(channels[..4].iter().all(|channel| channel.keys == 24), "{flags:?}");
+        let worst = measured(&output, &input, Scheme::Step);
+        assert!(worst < 0.004, "{flags:?}: {worst}");
+        let mut check = vec!["check", text(&output), "--strict", "--against", text(&input)];
+        if flags.contains(&"--path") {
+            check.extend(["--against", text(&flight)]);
+        }
+        run(check).exits(0);
+    }
+    let copies = ["--scheme", "step", "--path", text(&flight), "--repeat", "3"];
+    run(["convert", text(&input), "-o", text(&output)].iter().chain(&copies)).exits(1).says(&["--repeat"]);
+}
