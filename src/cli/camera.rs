@@ -38,6 +38,9 @@ impl FromStr for CameraSpec {
 
     fn from_str(text: &str) -> Result<CameraSpec, String> {
         let (name, words) = split(text);
+        if let Some(word) = stray(&name) {
+            return Err(format!("expected {}, found '{word}='", WORDS.join(", ")));
+        }
         let (mut look_at, mut rotation, mut offset) = (None, None, None);
         for word in &words {
             let (key, value) = word.split_once('=').expect("split found it");
@@ -82,6 +85,13 @@ fn split(text: &str) -> (String, Vec<String>) {
         open.push_str(part);
     }
     (name, words)
+}
+
+/// What looks like a word after a name, and is none that is known.
+fn stray(name: &str) -> Option<&str> {
+    let key = |part: &str| part.bytes().all(|b| b.is_ascii_lowercase() || b == b'-' || b == b'_');
+    let words = name.split(',').skip(1).filter_map(|part| part.split_once('='));
+    words.map(|(word, _)| word).find(|word| !word.is_empty() && key(word))
 }
 
 fn file(text: &str) -> Result<PathBuf, String> {
@@ -187,6 +197,7 @@ mod tests {
             ("p.dat,look-at=root,rotation=r.dat", "found both"),
             ("p.dat,look-at=root,look-at=1:2:3", "twice"),
             ("-", "standard input"),
+            ("p.dat,lookat=root", "found 'lookat='"),
         ] {
             let error = kind(text).unwrap_err();
             assert!(error.contains(named), "{text}: {error}");

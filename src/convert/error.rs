@@ -45,24 +45,38 @@ pub enum Error {
         several_schemes: bool,
     },
     /// Copies of what is held.
-    #[error("copies of poses that are held (--scheme step) cannot be made; leave out --repeat")]
-    HeldCopies,
+    #[error("{0}: copies of poses that are held (--scheme step) cannot be made; leave out --repeat")]
+    HeldCopies(String),
     /// A tolerance that cannot be kept.
-    #[error("{error}{}", advice_on_coding(*.reserve))]
+    #[error("{source_name}: {}", unkept(*.error, unit, *.reserve, *.shared))]
     Fewest {
+        /// The input's name.
+        source_name: String,
         /// Why.
         error: reduce::Error,
+        /// What tolerances are told in.
+        unit: &'static str,
         /// The part of the tolerance that 16-bit numbers take.
         reserve: f64,
+        /// Whether the tolerance is one node's part of a distance that all share.
+        shared: bool,
     },
 }
 
-fn advice_on_coding(reserve: f64) -> String {
-    if reserve > 0.0 {
+fn unkept(error: reduce::Error, unit: &str, reserve: f64, shared: bool) -> String {
+    let told = match error {
+        reduce::Error::Tolerance { tolerance, least } => format!(
+            "a tolerance of {tolerance:.1e}{unit} is too small: float32 numbers need at least {least:.1e}{unit}"
+        ),
+        other => other.to_string(),
+    };
+    let part = if shared { "; it is what --tolerance-distance leaves for one node" } else { "" };
+    let coding = if reserve > 0.0 {
         format!(" (--quantize alone takes {reserve:.1e}°: choose a larger tolerance, or leave it out)")
     } else {
         String::new()
-    }
+    };
+    format!("{told}{part}{coding}")
 }
 
 fn advice(largest_fps: Option<Fps>, key_times: bool) -> String {

@@ -1,6 +1,5 @@
 //! Each move by as few keys as a tolerance allows.
 
-use super::Error;
 use super::facts::Seen;
 use crate::curve::Motion;
 use crate::moves::{Ground, Move, Mover, Turn};
@@ -27,6 +26,14 @@ pub struct Fewest {
 impl Fewest {
     /// The step that keeps component-blending viewers within 0.01°.
     pub const MAX_STEP: f64 = Steps::LARGE;
+}
+
+/// A tolerance that cannot be kept, as [`super::Error::Fewest`] tells it.
+pub(super) struct Unkept {
+    pub(super) error: reduce::Error,
+    pub(super) unit: &'static str,
+    pub(super) reserve: f64,
+    pub(super) shared: bool,
 }
 
 /// The keys of one move.
@@ -96,10 +103,13 @@ pub(super) fn object(
     moves: &[(Mover, Move)],
     fewest: &Fewest,
     encoding: Encoding,
-) -> Result<Vec<Chosen>, Error> {
-    let allowed = moves
-        .iter()
-        .map(|&(mover, ref a_move)| (a_move, allowed(ground, mover, a_move, moves.len(), fewest)));
+) -> Result<Vec<Chosen>, Unkept> {
+    // What turns nothing but itself displaces nothing, and has no part of a distance.
+    let displaces =
+        |(mover, a_move): &&(Mover, Move)| a_move.travel().is_some() || ground.reach_below(*mover) > 0.0;
+    let sharing = moves.iter().filter(displaces).count();
+    let allowed =
+        moves.iter().map(|&(mover, ref a_move)| (a_move, allowed(ground, mover, a_move, sharing, fewest)));
     let mut keys = all(allowed.collect(), ground.duration(), fewest, encoding)?;
     let end = ground.duration() as f32;
     let last = keys.iter().filter_map(|chosen| chosen.times.last().copied()).fold(0.0, f32::max);
@@ -115,7 +125,7 @@ pub(super) fn cameras(
     moves: &[(usize, Move)],
     fewest: &Fewest,
     encoding: Encoding,
-) -> Result<Vec<Chosen>, Error> {
+) -> Result<Vec<Chosen>, Unkept> {
     let allowed = |a_move: &Move| match a_move {
         Move::Travel(_) => distance(ground, fewest),
         Move::Keys(_) | Move::Attitude(_) => fewest.tolerance,
@@ -129,7 +139,7 @@ fn all(
     end: f64,
     fewest: &Fewest,
     encoding: Encoding,
-) -> Result<Vec<Chosen>, Error> {
+) -> Result<Vec<Chosen>, Unkept> {
     moves.into_par_iter().map(|(a_move, allowed)| chosen(a_move, end, allowed, fewest, encoding)).collect()
 }
 
@@ -148,15 +158,21 @@ pub(super) fn seen(all: &[Chosen]) -> Seen {
     seen
 }
 
-/// How far places may be off.
+/// How far places may be off: what the angle makes of the path's extent, but no less than
+/// float32 needs far from the origin.
 fn distance(ground: &Ground, fewest: &Fewest) -> f64 {
-    fewest.distance.unwrap_or(fewest.tolerance.to_radians() * ground.reach())
+    let by_angle = fewest.tolerance.to_radians() * ground.extent();
+    fewest.distance.unwrap_or(by_angle.max(FINEST * ground.reach()).max(f64::MIN_POSITIVE))
 }
 
+/// Of the distance from the origin, what float32 can keep: it rounds three coordinates by
+/// 2⁻²⁵ of themselves each, and the search needs four times that.
+const FINEST: f64 = 1e-6;
+
 /// How far a move of an object may be off, degrees or units. Where a distance is asked
-/// for, all `moves` share it: each may displace what it moves by an equal part.
-fn allowed(ground: &Ground, mover: Mover, a_move: &Move, moves: usize, fewest: &Fewest) -> f64 {
-    let share = fewest.distance.map(|distance| distance / moves as f64);
+/// for, so many moves share it: each may displace what it moves by an equal part.
+fn allowed(ground: &Ground, mover: Mover, a_move: &Move, sharing: usize, fewest: &Fewest) -> f64 {
+    let share = fewest.distance.map(|distance| distance / sharing as f64);
     match (a_move, share) {
         (Move::Travel(_), None) => distance(ground, fewest),
         (Move::Travel(_), Some(share)) => share,
@@ -177,7 +193,7 @@ fn chosen(
     allowed: f64,
     fewest: &Fewest,
     encoding: Encoding,
-) -> Result<Chosen, Error> {
+) -> Result<Chosen, Unkept> {
     let coded = encoding == Encoding::Normalized16;
     let reserve = if coded { reserve(encoding, fewest.max_step) } else { 0.0 };
     let options = reduce::Options {
@@ -202,7 +218,15 @@ fn chosen(
                 .map(|keys| Chosen::new(keys.times, Values::Places(keys.values), &keys.facts))
         }
     };
-    chosen.map(Chosen::wait).map_err(|error| Error::Fewest { error, reserve: options.reserve })
+    let travels = matches!(a_move, Move::Travel(_));
+    chosen.map(Chosen::wait).map_err(|error| Unkept {
+        error,
+        unit: if travels { " units" } else { "°" },
+        reserve: options.reserve,
+        shared: fewest
+            .distance
+            .is_some_and(|distance| if travels { allowed < distance } else { allowed < fewest.tolerance }),
+    })
 }
 
 /// The moves of an object of which some are held from key to key: those by their keys, the

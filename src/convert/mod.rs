@@ -22,7 +22,7 @@ use crate::read::Order;
 use crate::sample::{Fps, Timeline, TooFine, Writing};
 use crate::write::{Animation, Bin, Buffer, Colour, Glb, LARGEST_GLB, Scene, document, glb_size};
 use facts::Found;
-use fewest::Chosen;
+use fewest::{Chosen, Unkept};
 use layout::Layout;
 use recipe::recipe;
 use std::io::{self, Seek, Write};
@@ -96,7 +96,7 @@ impl<'a> ClipPlan<'a> {
         let held = |(_, a_move): &(Mover, Move)| matches!(a_move, Move::Keys(motion) if motion.is_step());
         let some_are_held = object.iter().any(held);
         if some_are_held && ground.stream().count > 1 {
-            return Err(Error::HeldCopies.into());
+            return Err(Unsampled::HeldCopies);
         }
         let when = match &options.sampling {
             &Sampling::Rate { fps, key_times } if some_are_held => {
@@ -159,7 +159,8 @@ impl<'a> ClipPlan<'a> {
 /// Why a clip cannot be sampled.
 enum Unsampled {
     TooFine(TooFine),
-    Fewest(Error),
+    Fewest(Unkept),
+    HeldCopies,
 }
 
 impl From<TooFine> for Unsampled {
@@ -168,8 +169,8 @@ impl From<TooFine> for Unsampled {
     }
 }
 
-impl From<Error> for Unsampled {
-    fn from(error: Error) -> Unsampled {
+impl From<Unkept> for Unsampled {
+    fn from(error: Unkept) -> Unsampled {
         Unsampled::Fewest(error)
     }
 }
@@ -187,7 +188,10 @@ impl<'a> Plan<'a> {
         let clip = |&scheme: &Scheme| {
             ClipPlan::new(ground, scheme, options).map_err(|error| match error {
                 Unsampled::TooFine(error) => too_fine(error, ground, source_name),
-                Unsampled::Fewest(error) => error,
+                Unsampled::Fewest(Unkept { error, unit, reserve, shared }) => {
+                    Error::Fewest { source_name: source_name.to_owned(), error, unit, reserve, shared }
+                }
+                Unsampled::HeldCopies => Error::HeldCopies(source_name.to_owned()),
             })
         };
         let clips = schemes.iter().map(clip).collect::<Result<_, _>>()?;

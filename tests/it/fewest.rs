@@ -203,3 +203,35 @@ fn held_poses_are_steps_with_a_key_each() {
     let copies = ["--scheme", "step", "--path", text(&flight), "--repeat", "3"];
     run(["convert", text(&input), "-o", text(&output)].iter().chain(&copies)).exits(1).says(&["--repeat"]);
 }
+
+#[test]
+fn places_are_as_exact_as_the_path_is_wide_wherever_it_lies() {
+    let (folder, output) = output();
+    let input = folder.path().join("in.dat");
+    let stated = |x: f64| {
+        let rows = format!("# catmull-rom 4\n{x} 0 0\n{} 3 0\n{} 0 5\n{} 1 9\n", x + 2.0, x + 5.0, x + 10.0);
+        std::fs::write(&input, rows).unwrap();
+        convert(&input, &output, &["--tolerance", "0.1"])["clips"][0]["deviationUnits"].as_f64().unwrap()
+    };
+    // The path is 10 wide: an angle of 0.1° makes 0.01745 of it.
+    let allowed = 0.1f64.to_radians() * 10.0;
+    assert!((0.5 * allowed..=allowed * 1.001).contains(&stated(0.0)), "{}", stated(0.0));
+    assert!(stated(1e4) <= allowed * 1.001, "{}", stated(1e4));
+    // Here float32 coordinates are 0.06 apart, and no less than it needs is asked for.
+    assert!(stated(1e6) <= 1.0, "{}", stated(1e6));
+    for place in ["0 0 0", "7 7 7"] {
+        std::fs::write(&input, format!("# polyline 4\n{place}\n{place}\n")).unwrap();
+        convert(&input, &output, &["--tolerance", "0.1"]);
+    }
+}
+
+#[test]
+fn a_tolerance_that_cannot_be_kept_is_told_with_its_unit_and_its_origin() {
+    let (chain, flight) = (keyframes("chain-even"), fixtures().join("paths/flight.dat"));
+    for (input, unit) in [(&chain, "°"), (&flight, " units")] {
+        let flags = ["--tolerance", "0.1", "--tolerance-distance", "1e-10", "-o", "/tmp/never.glb"];
+        let said = run(["convert", text(input)].iter().chain(&flags)).exits(1);
+        let words = [&*format!("{}: a tolerance of", input.display()), unit, "is too small"];
+        said.says(&words);
+    }
+}
