@@ -1,6 +1,7 @@
 //! The path on the common clock, and how the root turns on its way.
 
-use super::{Error, Move, Orient, Shape, Turn, merged};
+use super::ground::merged;
+use super::{Error, Move, Orient, Shape, Turn};
 use crate::curve::{Ends, Motion, Scheme};
 use crate::math::Quat;
 use crate::orient::{self, Attitude, Frame, Level, Levelled, Tangent, Upright};
