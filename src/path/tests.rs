@@ -424,6 +424,27 @@ fn what_makes_no_path_is_refused_with_the_ways_out() {
     assert_eq!(error, Error::NoChord { segment: 0 });
 }
 
+#[test]
+fn tiny_paths_are_as_sound_as_their_enlargement() {
+    // A point twice, then a step of a few millionths of the coordinates.
+    let row = |x: f64, y: f64, z: f64| DVec3::new(x, y, z) * 1e-310;
+    let (a, b) = (0.99999700000597, 1.0);
+    let points = [row(a, a, b), row(a, a, b), row(b, a, 0.999996000008)];
+    let options = Options { timing: Some(Timing::ConstantSpeed), ease: Ease::In, ..Options::default() };
+    for kind in CATMULL_ROM {
+        let Ok(path) = Path::new(kind, &points, None, &options) else { continue };
+        for i in 0..=2000 {
+            let t = path.duration() * f64::from(i) / 2000.0;
+            let (reached, bound) = (path.acceleration(t), path.acceleration_bound(t, t + 0.1));
+            let reached = (reached * 1e200).length() * 1e-200;
+            assert!(
+                reached <= bound * (1.0 + 1e-9) + f64::MIN_POSITIVE,
+                "{kind:?} {reached:e} {bound:e} at {t}"
+            );
+        }
+    }
+}
+
 /// Points on a coarse grid, so that many coincide or lie on a line, of any size.
 fn any_points() -> impl Strategy<Value = Vec<DVec3>> {
     let scale = prop::sample::select(vec![1.0, 1e150, 3e-200, 1e-310, 1e-7, 12345.6]);
