@@ -77,7 +77,8 @@ impl Path {
             closed: options.ends == PathEnds::Closed,
             unit,
             length,
-            steady: (plan.constant_speed && length > 0.0).then_some(options.ease),
+            // A path that is all one point, but for rounding, has no speed.
+            steady: (plan.constant_speed && parts.iter().any(Part::moves)).then_some(options.ease),
             pieces: Vec::new(),
             corners: Vec::new(),
             jumps: Vec::new(),

@@ -3,6 +3,7 @@
 use super::arc_length::ArcLength;
 use super::bezier::Bezier;
 use super::cusps::cusps;
+use super::knots::COINCIDENT;
 use super::piece::Piece;
 use super::segments::Segments;
 
@@ -17,6 +18,11 @@ pub(super) struct Part {
 }
 
 impl Part {
+    /// Whether it leads anywhere, as far as rounding lets one tell.
+    pub(super) fn moves(&self) -> bool {
+        self.curve.fastest() > COINCIDENT
+    }
+
     /// Length of the path up to the part's end.
     pub(super) fn behind(&self) -> f64 {
         self.before + self.arc.length()

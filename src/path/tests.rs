@@ -445,6 +445,14 @@ fn tiny_paths_are_as_sound_as_their_enlargement() {
     }
 }
 
+#[test]
+fn points_that_differ_by_less_than_rounding_are_one() {
+    let (a, b) = (DVec3::new(0.5, 0.5, 0.0), DVec3::new(0.5, 0.5, 4.1e-18));
+    let path = path(Kind::Bezier, &[a, b, a, a], timing(Timing::ConstantSpeed));
+    assert!(moments(&path).all(|t| path.position(t).distance(a) < 1e-17));
+    assert_eq!(path.direction(0.3), None);
+}
+
 /// Points on a coarse grid, so that many coincide or lie on a line, of any size.
 fn any_points() -> impl Strategy<Value = Vec<DVec3>> {
     let scale = prop::sample::select(vec![1.0, 1e150, 3e-200, 1e-310, 1e-7, 12345.6]);
