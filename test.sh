@@ -58,6 +58,11 @@ for wrap in "" --no-wrap; do
     --camera fixtures/paths/camera.dat,look-at=root --camera follow --camera keys \
     --camera fixtures/paths/bezier.dat,rotation=fixtures/paths/euler-bezier.dat
 done
+for interpolation in cubicspline step; do
+  mkdir "$out/$interpolation"
+  "$dat2glb" convert fixtures/keyframes/*.dat fixtures/paths/{flight,bezier,polyline,loop}.dat \
+    -o "$out/$interpolation/" --interpolation "$interpolation" -q
+done
 mkdir "$out/reduced"
 for tolerance in 0.1 0.001; do
   "$dat2glb" reduce "$out/all/chain-even.glb" -o "$out/reduced/chain-$tolerance.glb" --tolerance "$tolerance" -q

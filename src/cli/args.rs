@@ -1,18 +1,20 @@
 //! The command line: commands, options, help.
 
+mod keys;
+
 use super::camera::CameraSpec;
 use clap::builder::{PossibleValue, TypedValueParser, ValueParser};
 use clap::{Args, Parser, Subcommand, ValueHint};
-use dat2glb::convert::{Fewest, Sampling};
 use dat2glb::curve::{Ends, Scheme, Tcb};
 use dat2glb::moves::{Copies, Orient, Shape};
 use dat2glb::orient::{Axis, Frame, Level};
 use dat2glb::path::{Ease, PathEnds, Timing};
 use dat2glb::read::Order;
 use dat2glb::report::Format;
-use dat2glb::sample::{Encoding, Fps, Writing};
+use dat2glb::sample::Fps;
 use dat2glb::table::Notation;
 use dat2glb::write::Colour;
+use keys::Keys;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
@@ -93,9 +95,6 @@ pub(crate) struct Convert {
     pub(crate) ends: Ends,
     #[command(flatten)]
     pub(crate) tangents: Tangents,
-    /// Samples per second: 60, 23.976, 30000/1001
-    #[arg(long, default_value = "60")]
-    fps: Fps,
     /// Everything so many times as fast
     #[arg(long, value_name = "F", default_value = "1", allow_negative_numbers = true, value_parser = positive)]
     pub(crate) time_scale: f64,
@@ -112,17 +111,8 @@ pub(crate) struct Convert {
     /// With --check: how the report is written on standard output
     #[arg(long, value_name = "FORMAT", requires = "check", conflicts_with = "json", value_parser = formats())]
     report: Option<Format>,
-    /// Leave the key times out: an even grid of samples, which may miss the keys
-    #[arg(long)]
-    no_key_times: bool,
     #[command(flatten)]
-    fewest: FewestFlags,
-    /// Write rotations as whole numbers of 16 bits: half the bytes, and up to 0.004° off
-    #[arg(long)]
-    quantize: bool,
-    /// Do not work out how far playback is from the curve
-    #[arg(long, conflicts_with = "tolerance")]
-    no_bound: bool,
+    pub(crate) keys: Keys,
     #[command(flatten)]
     pub(crate) order: OrderFlag,
     /// Send what the inputs turn along this path
@@ -145,49 +135,10 @@ pub(crate) struct Convert {
     pub(crate) scenery: Scenery,
 }
 
-/// Keys where they are needed.
-#[derive(Args, Debug)]
-struct FewestFlags {
-    /// Instead of a rate, as few keys as keep playback within so many degrees of the curve
-    #[arg(long, value_name = "DEG", conflicts_with_all = ["fps", "no_key_times", "repeat"], allow_negative_numbers = true, value_parser = positive)]
-    tolerance: Option<f64>,
-    /// With --tolerance: how far, units, playback may be from the path, and a corner of a
-    /// chain from where it should be; without it what the angle makes of the path's extent
-    #[arg(long, value_name = "UNITS", requires = "tolerance", allow_negative_numbers = true, value_parser = positive)]
-    tolerance_distance: Option<f64>,
-    /// With --tolerance: the largest turn from key to key; up to 18 keeps viewers that blend
-    /// the four numbers within 0.01°
-    #[arg(long, value_name = "DEG", requires = "tolerance", default_value_t = Fewest::MAX_STEP, allow_negative_numbers = true, value_parser = step)]
-    max_step: f64,
-    /// With --tolerance: keys lie on the curve, which takes about 1.4 times as many
-    #[arg(long, requires = "tolerance")]
-    on_curve: bool,
-}
-
-impl FewestFlags {
-    fn fewest(&self) -> Option<Fewest> {
-        let tolerance = self.tolerance?;
-        let (distance, max_step) = (self.tolerance_distance, self.max_step);
-        Some(Fewest { tolerance, distance, max_step, on_curve: self.on_curve })
-    }
-}
-
 impl Convert {
     /// How a report is written.
     pub(crate) fn format(&self) -> Format {
         if self.json { Format::Json } else { self.report.unwrap_or_default() }
-    }
-
-    /// When samples are taken.
-    pub(crate) fn sampling(&self) -> Sampling {
-        let rate = Sampling::Rate { fps: self.fps, key_times: !self.no_key_times };
-        self.fewest.fewest().map_or(rate, Sampling::Fewest)
-    }
-
-    /// How rotations become numbers.
-    pub(crate) fn writing(&self) -> Writing {
-        let encoding = if self.quantize { Encoding::Normalized16 } else { Encoding::Float };
-        Writing { encoding, bound: !self.no_bound }
     }
 
     /// The schemes asked for, each once, in the order given.

@@ -24,6 +24,9 @@ use std::time::Instant;
 const WRITE_BUFFER: usize = 1 << 20;
 
 pub(super) fn run(options: &Convert) -> Result<Exit, Failure> {
+    if let Some(conflict) = options.keys.conflict(options.scenery.copies()) {
+        return Err(Failure::usage(conflict));
+    }
     let jobs = jobs(options)?;
     if options.check {
         return check_outputs(&jobs, options);
@@ -255,8 +258,8 @@ fn planned<T>(
         cameras: options.scenery.cameras.iter().map(|camera| camera.said.clone()).collect(),
         path_colour: options.scenery.path_colour(),
         schemes: options.schemes(),
-        sampling: options.sampling(),
-        writing: options.writing(),
+        sampling: options.keys.sampling(),
+        writing: options.keys.writing(),
     };
     let shape = Shape {
         copies: options.scenery.copies(),

@@ -1,13 +1,13 @@
 //! Each move by as few keys as a tolerance allows.
 
+use super::chosen::{Chosen, Values, held};
 use super::facts::Seen;
-use crate::curve::Motion;
+use crate::math::Quat;
 use crate::moves::{Ground, Move, Mover, Turn};
-use crate::reduce::{self, Attitude, Facts, Travelling, Turning};
-use crate::sample::{self, Encoding, Steps, Timeline, TrackFacts, Writing, code};
+use crate::reduce::{self, Attitude, CubicKeys, Curve, Numbers, Travelling, Turning};
+use crate::sample::{Encoding, Steps};
 use crate::write::Interpolation;
 use rayon::prelude::*;
-use std::convert::Infallible;
 
 /// What is asked for instead of a rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,11 +21,17 @@ pub struct Fewest {
     pub max_step: f64,
     /// Keys lie on the curve.
     pub on_curve: bool,
+    /// Keys for CUBICSPLINE playback, which lie on the curve too; else for LINEAR.
+    pub cubic: bool,
 }
 
 impl Fewest {
     /// The step that keeps component-blending viewers within 0.01°.
     pub const MAX_STEP: f64 = Steps::LARGE;
+    /// For cubics, which such viewers do not show: far enough from half a turn.
+    pub const MAX_CUBIC_STEP: f64 = 90.0;
+    /// The tolerance for cubics where none is asked for, degrees.
+    pub const CUBIC_TOLERANCE: f64 = 0.01;
 }
 
 /// A tolerance that cannot be kept, as [`super::Error::Fewest`] tells it.
@@ -34,66 +40,6 @@ pub(super) struct Unkept {
     pub(super) unit: &'static str,
     pub(super) reserve: f64,
     pub(super) shared: bool,
-}
-
-/// The keys of one move.
-#[derive(Clone, Debug)]
-pub(super) struct Chosen {
-    pub(super) times: Vec<f32>,
-    pub(super) values: Values,
-    pub(super) facts: TrackFacts,
-    /// How far playback is from the input's keys, where they were moved.
-    pub(super) keys_moved: Option<f64>,
-    pub(super) interpolation: Interpolation,
-}
-
-#[derive(Clone, Debug)]
-pub(super) enum Values {
-    Rotations(Vec<[f32; 4]>),
-    Places(Vec<[f32; 3]>),
-}
-
-/// What is known of chosen keys, as samplers say it.
-fn known(facts: &Facts) -> TrackFacts {
-    let Facts { deviation, nlerp, proven, largest_step, .. } = *facts;
-    TrackFacts {
-        deviation: proven.then_some(deviation),
-        nlerp: proven.then_some(nlerp),
-        measured: (!proven).then_some(deviation),
-        steps: Steps { large: 0, worst: largest_step, at: 0.0 },
-    }
-}
-
-impl Chosen {
-    /// Keys for LINEAR playback, by what the search found out.
-    fn new(times: Vec<f32>, values: Values, facts: &Facts) -> Chosen {
-        let keys_moved = matches!(values, Values::Rotations(_)).then_some(facts.keys_moved);
-        Chosen { times, values, facts: known(facts), keys_moved, interpolation: Interpolation::Linear }
-    }
-
-    /// Holds the last value until `end`.
-    pub(super) fn hold_until(&mut self, end: f32) {
-        fn repeat_last<T: Copy>(values: &mut Vec<T>) {
-            values.extend(values.last().copied());
-        }
-        self.times.push(end);
-        match &mut self.values {
-            Values::Rotations(rotations) => repeat_last(rotations),
-            Values::Places(places) => repeat_last(places),
-        }
-    }
-
-    /// A key at 0 for what starts later: until then it waits.
-    fn wait(mut self) -> Chosen {
-        if self.times[0] > 0.0 {
-            self.times.insert(0, 0.0);
-            match &mut self.values {
-                Values::Rotations(rotations) => rotations.insert(0, rotations[0]),
-                Values::Places(places) => places.insert(0, places[0]),
-            }
-        }
-        self
-    }
 }
 
 /// The keys of an object's moves. The first of them keeps the clip's last time where no
@@ -147,12 +93,11 @@ fn all(
 pub(super) fn seen(all: &[Chosen]) -> Seen {
     let mut seen = Seen::default();
     for chosen in all {
-        match chosen.values {
-            Values::Rotations(_) => {
-                seen.tracks.push(chosen.facts);
-                seen.keys_moved = seen.keys_moved.into_iter().chain(chosen.keys_moved).reduce(f64::max);
-            }
-            Values::Places(_) => seen.distances.extend(chosen.facts.deviation),
+        if chosen.values.are_rotations() {
+            seen.tracks.push(chosen.facts);
+            seen.keys_moved = seen.keys_moved.into_iter().chain(chosen.keys_moved).reduce(f64::max);
+        } else {
+            seen.distances.extend(chosen.facts.deviation);
         }
     }
     seen
@@ -202,24 +147,20 @@ fn chosen(
         max_step: (!matches!(a_move, Move::Travel(_))).then_some(fewest.max_step),
         on_curve: fewest.on_curve,
     };
-    let rotations = |keys: reduce::Keys<4>| {
-        let keys = if coded { recoded(keys, encoding, reserve) } else { keys };
-        Chosen::new(keys.times, Values::Rotations(keys.values), &keys.facts)
-    };
+    let coding = coded.then_some((encoding, reserve));
+    let cubic = fewest.cubic;
     let chosen = match a_move {
         Move::Keys(motion) if motion.is_step() => return Ok(held(motion, encoding)),
-        Move::Keys(motion) => reduce::rotation(&Turning::new(motion.clone()), &options).map(rotations),
+        Move::Keys(motion) => rotation(&Turning::new(motion.clone()), &options, cubic, coding),
         Move::Attitude(Turn { at, knots, ramps }) => {
-            reduce::rotation(&Attitude::new(at, (0.0, end), knots, ramps), &options).map(rotations)
+            rotation(&Attitude::new(at, (0.0, end), knots, ramps), &options, cubic, coding)
         }
         Move::Travel(travel) => {
-            let curve = Travelling::new(travel.as_ref(), (0.0, end), travel.jumps());
-            reduce::numbers(&curve, &options)
-                .map(|keys| Chosen::new(keys.times, Values::Places(keys.values), &keys.facts))
+            place(&Travelling::new(travel.as_ref(), (0.0, end), travel.jumps()), &options, cubic)
         }
     };
     let travels = matches!(a_move, Move::Travel(_));
-    chosen.map(Chosen::wait).map_err(|error| Unkept {
+    chosen.map(|chosen| chosen.wait().span(end as f32)).map_err(|error| Unkept {
         error,
         unit: if travels { " units" } else { "°" },
         reserve: options.reserve,
@@ -229,54 +170,53 @@ fn chosen(
     })
 }
 
-/// The moves of an object of which some are held from key to key: those by their keys, the
-/// others by the samples of a timeline.
-pub(super) fn held_and_sampled<M>(moves: &[(M, Move)], timeline: &Timeline, writing: Writing) -> Vec<Chosen> {
-    let times: Vec<f32> = (0..timeline.chunks()).flat_map(|chunk| timeline.chunk(chunk).1).collect();
-    let one = |(_, a_move): &(M, Move)| match a_move {
-        Move::Keys(motion) if motion.is_step() => held(motion, writing.encoding),
-        other => sampled(other, timeline, &times, writing),
+/// The keys of a rotation; `coding` says by what numbers, and what these cost.
+fn rotation(
+    curve: &impl Curve<Value = Quat>,
+    options: &reduce::Options,
+    cubic: bool,
+    coding: Option<(Encoding, f64)>,
+) -> Result<Chosen, reduce::Error> {
+    if cubic {
+        return Ok(cubic_keys(
+            reduce::cubic_rotation(curve, options)?,
+            Values::Rotations,
+            Values::CubicRotations,
+        ));
+    }
+    let keys = reduce::rotation(curve, options)?;
+    let keys = match coding {
+        Some((encoding, reserve)) => recoded(keys, encoding, reserve),
+        None => keys,
     };
-    moves.iter().map(one).collect()
+    Ok(Chosen::new(keys.times, Values::Rotations(keys.values), &keys.facts, Interpolation::Linear))
 }
 
-/// A motion that is held: its keys as they are.
-fn held(motion: &Motion, encoding: Encoding) -> Chosen {
-    let mut written: Vec<[f32; 4]> = Vec::with_capacity(motion.times().len());
-    let mut off: f64 = 0.0;
-    for &t in motion.times() {
-        let key = motion.at(t);
-        let numbers = encoding.numbers(key);
-        off = off.max(sample::written(numbers).angle_to(key).to_degrees());
-        written.push(numbers);
+/// The keys of a way.
+fn place(
+    curve: &impl Curve<Value = Numbers<3>>,
+    options: &reduce::Options,
+    cubic: bool,
+) -> Result<Chosen, reduce::Error> {
+    if cubic {
+        return Ok(cubic_keys(reduce::cubic_numbers(curve, options)?, Values::Places, Values::CubicPlaces));
     }
-    let facts = TrackFacts { deviation: Some(off), nlerp: Some(off), ..TrackFacts::default() };
-    let times = motion.times().iter().map(|&t| t as f32).collect();
-    let (values, interpolation) = (Values::Rotations(written), Interpolation::Step);
-    Chosen { times, values, facts, keys_moved: None, interpolation }.wait()
+    let keys = reduce::numbers(curve, options)?;
+    Ok(Chosen::new(keys.times, Values::Places(keys.values), &keys.facts, Interpolation::Linear))
 }
 
-/// The samples of a timeline, in memory.
-fn sampled(a_move: &Move, timeline: &Timeline, times: &[f32], writing: Writing) -> Chosen {
-    let (mut turns, mut places) = (Vec::new(), Vec::new());
-    let mut facts = TrackFacts::default();
-    if let Some(rotation) = a_move.rotation() {
-        let all = sample::rotations(&[rotation], timeline, writing, |chunk| {
-            turns.extend_from_slice(chunk);
-            Ok::<(), Infallible>(())
-        });
-        facts = all.map_or(facts, |all| all[0]);
+/// Keys for CUBICSPLINE playback; what is still has one for LINEAR playback, as a spline
+/// of one key is none.
+fn cubic_keys<const N: usize>(
+    keys: CubicKeys<N>,
+    plain: fn(Vec<[f32; N]>) -> Values,
+    cubic: fn(Vec<[[f32; N]; 3]>) -> Values,
+) -> Chosen {
+    let CubicKeys { times, values, facts } = keys;
+    match values[..] {
+        [[_, value, _]] => Chosen::new(times, plain(vec![value]), &facts, Interpolation::Linear),
+        _ => Chosen::new(times, cubic(values), &facts, Interpolation::CubicSpline),
     }
-    if let Some(travel) = a_move.travel() {
-        let distance = sample::translations(travel, timeline, |chunk| {
-            places.extend_from_slice(chunk);
-            Ok::<(), Infallible>(())
-        });
-        facts.deviation = distance.ok().filter(|_| writing.bound);
-    }
-    let values = if turns.is_empty() { Values::Places(places) } else { Values::Rotations(turns) };
-    let times = times.to_vec();
-    Chosen { times, values, facts, keys_moved: None, interpolation: Interpolation::Linear }
 }
 
 /// What coding adds to a playback's error: between two keys, each off by at most the
@@ -290,20 +230,10 @@ fn reserve(encoding: Encoding, step: f64) -> f64 {
 /// Keys as a file with fewer digits holds them.
 fn recoded(mut keys: reduce::Keys<4>, encoding: Encoding, reserve: f64) -> reduce::Keys<4> {
     for value in &mut keys.values {
-        *value = encoding.numbers(crate::math::Quat::from_xyzw(value.map(f64::from)));
+        *value = encoding.numbers(Quat::from_xyzw(value.map(f64::from)));
     }
     keys.facts.deviation += reserve;
     keys.facts.nlerp += reserve;
     keys.facts.keys_moved += reserve;
     keys
-}
-
-/// The bytes of rotations by an encoding.
-pub(super) fn bytes(rotations: &[[f32; 4]], encoding: Encoding) -> Vec<u8> {
-    match encoding {
-        Encoding::Float => super::layout::little_endian(rotations),
-        Encoding::Normalized16 => {
-            rotations.as_flattened().iter().flat_map(|&number| code(number).to_le_bytes()).collect()
-        }
-    }
 }

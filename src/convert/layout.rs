@@ -1,7 +1,7 @@
 //! What stands in the buffer, in order, known before anything is sampled.
 
+use super::chosen::{Chosen, Values, little_endian, rotation_bytes};
 use super::facts::{Found, Late};
-use super::fewest::{Chosen, Values, bytes};
 use super::{ClipPlan, When};
 use crate::math::Quat;
 use crate::moves::{Move, Mover, Stream};
@@ -17,7 +17,7 @@ pub(super) struct Layout<'p> {
     /// Bytes of the buffer.
     pub(super) length: u64,
     stream: &'p Stream,
-    encoding: Encoding,
+    writing: Writing,
 }
 
 /// A stretch of the buffer that is written at once.
@@ -85,8 +85,7 @@ impl<'p> Layout<'p> {
         writing: Writing,
     ) -> Layout<'p> {
         let length = scene.bytes().len() as u64;
-        let encoding = writing.encoding;
-        let mut layout = Layout { blocks: Vec::new(), channels: Vec::new(), length, stream, encoding };
+        let mut layout = Layout { blocks: Vec::new(), channels: Vec::new(), length, stream, writing };
         let mut grids: Vec<(&Timeline, Vec<Times>)> = Vec::new();
         let mut keys: Vec<(&[f32], Times)> = Vec::new();
         for (i, clip) in clips.iter().enumerate() {
@@ -160,7 +159,7 @@ impl<'p> Layout<'p> {
                 times
             }
         };
-        let count = times.data.count;
+        let count = times.data.count * chosen.values.per_key();
         let offset = self.add(clip, Content::Chosen(&chosen.values), count * self.size(a_move));
         let channel = self.channel(node, a_move, times, Data { offset, count });
         Channel { interpolation: chosen.interpolation, ..channel }
@@ -173,8 +172,7 @@ impl<'p> Layout<'p> {
                 tracks.len() as u64 * of.samples(timeline.len() as u64)
             }
             Content::Travel { timeline, of, .. } => of.samples(timeline.len() as u64),
-            Content::Chosen(Values::Rotations(rotations)) => rotations.len() as u64,
-            Content::Chosen(Values::Places(places)) => places.len() as u64,
+            Content::Chosen(values) => values.keys() as u64,
             Content::Times(_) | Content::OwnTimes(_) | Content::Appearance => 0,
         };
         self.blocks.iter().map(samples).sum()
@@ -308,7 +306,7 @@ impl<'p> Layout<'p> {
 
     /// Bytes of one sample.
     fn size(&self, a_move: &Move) -> u64 {
-        match (a_move, self.encoding) {
+        match (a_move, self.writing.encoding) {
             (Move::Travel(_), _) => 12,
             (_, Encoding::Float) => 16,
             (_, Encoding::Normalized16) => 8,
@@ -316,13 +314,14 @@ impl<'p> Layout<'p> {
     }
 
     fn channel(&self, node: usize, a_move: &Move, times: Times, values: Data) -> Channel {
-        let (property, component) = match (a_move, self.encoding) {
+        let (property, component) = match (a_move, self.writing.encoding) {
             (Move::Travel(_), _) => (Property::Translation, Component::F32),
             (_, Encoding::Float) => (Property::Rotation, Component::F32),
             (_, Encoding::Normalized16) => (Property::Rotation, Component::I16),
         };
         let Times { data, span } = times;
-        Channel { node, property, interpolation: Interpolation::Linear, component, times: data, span, values }
+        let interpolation = if self.writing.hold { Interpolation::Step } else { Interpolation::Linear };
+        Channel { node, property, interpolation, component, times: data, span, values }
     }
 
     /// By how much copies can be late or early, their times being rounded once more, and
@@ -366,19 +365,15 @@ impl Block<'_> {
                 let times: Vec<[f32; 1]> = times.iter().map(|&t| [t]).collect();
                 buffer.append(&little_endian(&times))
             }
-            Content::Chosen(Values::Rotations(rotations)) => {
-                progress(rotations.len() as u64);
-                buffer.append(&bytes(rotations, writing.encoding))
-            }
-            Content::Chosen(Values::Places(places)) => {
-                progress(places.len() as u64);
-                buffer.append(&little_endian(places))
+            Content::Chosen(values) => {
+                progress(values.keys() as u64);
+                buffer.append(&values.bytes(writing.encoding))
             }
             Content::Appearance => buffer.append(&little_endian(&[[0f32; 3], [1.0; 3]])),
             Content::Rotations { tracks, timeline, of } => {
                 let mut append = |rotations: &[[f32; 4]]| {
                     progress(rotations.len() as u64);
-                    buffer.append(&bytes(rotations, writing.encoding))
+                    buffer.append(&rotation_bytes(rotations, writing.encoding))
                 };
                 let facts = match of {
                     Whose::Ring => rotations_twice(tracks, timeline, writing, &mut append)?,
@@ -397,15 +392,18 @@ impl Block<'_> {
                 };
                 if *of == Whose::Ring {
                     let mut left = timeline.len() - 1;
-                    sample::translations(*travel, timeline, |places| {
+                    sample::translations(*travel, timeline, writing.hold, |places| {
                         append(all_but_last(places, &mut left))
                     })?;
                 }
                 let distance = match of {
-                    Whose::Late => {
-                        sample::translations(*travel, timeline, first_twice(timeline.len(), append))?
-                    }
-                    _ => sample::translations(*travel, timeline, append)?,
+                    Whose::Late => sample::translations(
+                        *travel,
+                        timeline,
+                        writing.hold,
+                        first_twice(timeline.len(), append),
+                    )?,
+                    _ => sample::translations(*travel, timeline, writing.hold, append)?,
                 };
                 if writing.bound {
                     found.of(*of == Whose::Cameras).distances.push(distance);
@@ -507,9 +505,4 @@ fn node(object: &Object, mover: Mover) -> usize {
         Mover::Root => object.root,
         Mover::Track(track) => object.turned[track],
     }
-}
-
-pub(super) fn little_endian<const N: usize>(values: &[[f32; N]]) -> Vec<u8> {
-    let bits: Vec<u32> = values.as_flattened().iter().map(|x| x.to_bits().to_le()).collect();
-    bytemuck::cast_slice(&bits).to_vec()
 }

@@ -3,6 +3,7 @@
 //! A [`Plan`] knows everything about the output but the samples: what will be warned
 //! about, and how large it becomes. Writing it streams; memory holds the keys.
 
+mod chosen;
 mod error;
 mod facts;
 mod fewest;
@@ -21,8 +22,9 @@ use crate::path::{Kind, PathEnds};
 use crate::read::Order;
 use crate::sample::{Fps, Timeline, TooFine, Writing};
 use crate::write::{Animation, Bin, Buffer, Colour, Glb, LARGEST_GLB, Scene, document, glb_size};
+use chosen::Chosen;
 use facts::Found;
-use fewest::{Chosen, Unkept};
+use fewest::Unkept;
 use layout::Layout;
 use recipe::recipe;
 use std::io::{self, Seek, Write};
@@ -103,9 +105,9 @@ impl<'a> ClipPlan<'a> {
                 let timeline = ground.timeline(scheme, fps, key_times)?;
                 let cameras_at = ground.camera_timeline(fps, key_times)?;
                 When::Chosen {
-                    object: fewest::held_and_sampled(&object, &timeline, options.writing),
+                    object: chosen::held_and_sampled(&object, &timeline, options.writing),
                     cameras: match &cameras_at {
-                        Some(timeline) => fewest::held_and_sampled(&cameras, timeline, options.writing),
+                        Some(timeline) => chosen::held_and_sampled(&cameras, timeline, options.writing),
                         None => Vec::new(),
                     },
                 }

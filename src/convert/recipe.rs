@@ -27,6 +27,8 @@ struct Recipe<'a> {
     key_times: Option<bool>,
     #[serde(flatten)]
     fewest: Option<FewestRecipe>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    interpolation: Option<&'static str>,
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     quantized: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -134,6 +136,7 @@ pub(super) fn recipe(ground: &Ground, options: &Options, scheme: Scheme, facts: 
         fps: rate.map(|(fps, _)| fps.to_string()),
         key_times: rate.map(|(_, key_times)| key_times),
         fewest,
+        interpolation: interpolation(options),
         quantized: options.writing.encoding == Encoding::Normalized16,
         quat_order: options.quat_order.map(Order::name),
         time_scale: (shape.time_scale != 1.0).then_some(shape.time_scale),
@@ -157,8 +160,16 @@ pub(super) fn recipe(ground: &Ground, options: &Options, scheme: Scheme, facts: 
     serde_json::to_string(&recipe).expect("plain data becomes JSON")
 }
 
+/// What is not LINEAR, in glTF's word.
+fn interpolation(options: &Options) -> Option<&'static str> {
+    match options.sampling {
+        Sampling::Rate { .. } => options.writing.hold.then_some("STEP"),
+        Sampling::Fewest(fewest) => fewest.cubic.then_some("CUBICSPLINE"),
+    }
+}
+
 fn fewest_recipe(fewest: Fewest) -> FewestRecipe {
-    let Fewest { tolerance, distance, max_step, on_curve } = fewest;
+    let Fewest { tolerance, distance, max_step, on_curve, .. } = fewest;
     FewestRecipe { tolerance, tolerance_distance: distance, max_step, on_curve }
 }
 

@@ -110,12 +110,12 @@ impl Way {
         }
     }
 
-    /// A time of the clock as one of the path. The float32 time nearest to a corner, which
-    /// may lie just before it, counts as the corner: there the turn is done.
+    /// A time of the clock as one of the path. From the float32 time nearest to a corner on,
+    /// which may lie just before it, the turn is done.
     fn past_corner(&self, t: f64) -> f64 {
         let corners = self.path.corners();
         let next = corners.partition_point(|corner| self.start + corner < t);
-        let here = |corner: &&f64| f64::from((self.start + **corner) as f32) == t;
+        let here = |corner: &&f64| f64::from((self.start + **corner) as f32) <= t;
         corners.get(next).filter(here).copied().unwrap_or(t - self.start)
     }
 
@@ -146,6 +146,17 @@ impl Travel for &Way {
 
     fn speed_bound(&self, from: f64, to: f64) -> f64 {
         self.path.speed_bound(from - self.start, to - self.start)
+    }
+
+    fn cubic(&self, from: f64, to: f64) -> Option<[DVec3; 4]> {
+        let (start, end) = (self.start, self.end());
+        if to <= start || from >= end {
+            return Some([self.place(from); 4]);
+        }
+        if from < start || to > end {
+            return None;
+        }
+        self.path.cubic(from - start, to - start)
     }
 
     fn knots(&self) -> &[f64] {

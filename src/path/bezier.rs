@@ -56,6 +56,17 @@ impl Bezier {
         de_casteljau(&self.hodograph, u)
     }
 
+    /// Its control points as those of a cubic, if its degree is 3 at most.
+    pub(super) fn cubic(&self) -> Option<[DVec3; 4]> {
+        let points = &self.points[..];
+        match *points {
+            [a, b] => Some([a, a.lerp(b, 1.0 / 3.0), a.lerp(b, 2.0 / 3.0), b]),
+            [a, b, c] => Some([a, a.lerp(b, 2.0 / 3.0), c.lerp(b, 2.0 / 3.0), c]),
+            [a, b, c, d] => Some([a, b, c, d]),
+            _ => None,
+        }
+    }
+
     /// The largest control point of the derivative, an upper bound of |B′|.
     pub(super) fn fastest(&self) -> f64 {
         longest(&self.hodograph)

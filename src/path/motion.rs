@@ -187,6 +187,16 @@ impl Path {
         piece.direction(self.parameter(piece, t))
     }
 
+    /// The Bézier control points of the path from t0 to t1, where it is one polynomial of time
+    /// there, cubic at most.
+    pub fn cubic(&self, t0: f64, t1: f64) -> Option<[DVec3; 4]> {
+        let mut pieces = self.overlapping(t0, t1);
+        let (piece, a, b) = pieces.next()?;
+        let timed = self.steady.is_none() && pieces.next().is_none() && a < b;
+        let points = timed.then(|| piece.curve.part(a, b).cubic())??;
+        Some(points.map(|point| point * self.unit))
+    }
+
     /// Times inside at which the direction jumps, increasing. The seam of a closed path
     /// is not among them.
     pub fn corners(&self) -> &[f64] {

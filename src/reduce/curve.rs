@@ -19,6 +19,11 @@ pub trait Curve: Sync {
     /// Upper bounds of speed and acceleration between two times that no knot parts, in
     /// the units of [`Value::distance`]; none where nothing is known.
     fn rates(&self, from: f64, to: f64) -> Option<Rates>;
+    /// Where the curve is a cubic from one time to another, its Bézier control points; none
+    /// where it is not, or is no place.
+    fn cubic(&self, _from: f64, _to: f64) -> Option<[[f64; 3]; 4]> {
+        None
+    }
     /// Stretches, increasing, that stand for a jump: their turn is no step.
     fn ramps(&self) -> &[(f64, f64)] {
         &[]
@@ -150,6 +155,10 @@ impl Curve for Travelling<'_> {
         let (speed, acceleration) =
             (self.travel.speed_bound(from, to), self.travel.acceleration_bound(from, to));
         Some(Rates { speed, acceleration })
+    }
+
+    fn cubic(&self, from: f64, to: f64) -> Option<[[f64; 3]; 4]> {
+        self.travel.cubic(from, to).map(|points| points.map(|point| point.to_array()))
     }
 }
 

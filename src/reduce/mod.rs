@@ -6,6 +6,7 @@
 //! the keys do. The first and the last key, and all corners of the curve, are kept. The
 //! search and why it is near the best there is: docs/math/fewest-keys.md.
 
+mod cubic;
 mod curve;
 mod proof;
 mod reach;
@@ -15,6 +16,7 @@ mod value;
 #[cfg(test)]
 mod tests;
 
+pub use cubic::{CubicKeys, Flat, cubic_numbers, cubic_rotation};
 pub use curve::{Attitude, Curve, Travelling, Turning};
 pub use value::{Numbers, OtherBlend, Step, Value};
 
@@ -110,9 +112,13 @@ pub fn numbers<const N: usize>(
     curve: &impl Curve<Value = Numbers<N>>,
     options: &Options,
 ) -> Result<Keys<N>, Error> {
-    let rounding = curve.knots().iter().map(|&t| curve.at(t).rounding()).fold(0.0, f64::max);
-    check(options, 4.0 * rounding)?;
+    check(options, 4.0 * largest_rounding(curve))?;
     reduce(curve, options, 1.0)
+}
+
+/// What float32 costs at the curve's knots, at most.
+fn largest_rounding(curve: &impl Curve) -> f64 {
+    curve.knots().iter().map(|&t| curve.at(t).rounding()).fold(0.0, f64::max)
 }
 
 /// Refuses what float32 cannot keep. Written so that what is no number is refused.

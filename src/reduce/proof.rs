@@ -140,7 +140,7 @@ impl<C: Curve> Proof<'_, C> {
 }
 
 /// Bounds a gap on a part that no knot divides, or measures it where no rates are known.
-fn bound_part(worst: &mut Worst, gap: &impl Gap, part: Part, rates: Option<Rates>) {
+pub(super) fn bound_part(worst: &mut Worst, gap: &impl Gap, part: Part, rates: Option<Rates>) {
     worst.note(part.at_from.max(part.at_to));
     match rates {
         Some(rates) => worst.search(gap, part, rates, 0),

@@ -7,7 +7,7 @@ use crate::sample::Travel;
 use glam::{DQuat, DVec3};
 
 /// Key times and keys with steps up to 150°, over 20 s.
-fn clip(even: bool, count: usize) -> (Vec<f64>, Vec<Quat>) {
+pub(super) fn clip(even: bool, count: usize) -> (Vec<f64>, Vec<Quat>) {
     let wave = |i: usize, k: f64| (k * i as f64 + k).sin();
     let intervals: Vec<f64> = (1..count).map(|i| if even { 1.0 } else { 1.0 + 0.7 * wave(i, 2.9) }).collect();
     let whole: f64 = intervals.iter().sum();

@@ -59,6 +59,33 @@ pub(super) fn upper_bounds(stretch: &Stretch) -> Bounds {
     Bounds { slerp: bound(search.slerp, Blend::Slerp), nlerp: bound(search.nlerp, Blend::Nlerp) }
 }
 
+/// The bounds of a stretch whose samples are held, each until the next.
+pub(super) fn held_bounds(stretch: &Stretch) -> Bounds {
+    let mut worst = Worst::new(NEGLIGIBLE);
+    let times = |i: usize| f64::from(stretch.times[i]);
+    for (i, q) in stretch.written.iter().enumerate() {
+        let held = written(*q);
+        worst.note(0.5 * held.angle_to(stretch.exact[i]));
+        if i + 1 == stretch.times.len() {
+            break;
+        }
+        let (end, mut from) = (times(i + 1), times(i));
+        let h = end - from;
+        let playback = Playback { from, h, ends: [held; 2], turn: 0.0, blend: Blend::Slerp };
+        while from < end {
+            let piece = stretch.motion.piece_at(from);
+            let to = if piece.end > from { piece.end.min(end) } else { end };
+            let gap = Interlude { piece: &piece, playback };
+            let part = Part { from, to, at_from: gap.at(from), at_to: gap.at(to) };
+            worst.note(part.at_from.max(part.at_to));
+            worst.search(&gap, part, whole(&piece), CHEAP);
+            from = to;
+        }
+    }
+    let bound = 2.0 * worst.bound();
+    Bounds { slerp: bound, nlerp: bound }
+}
+
 struct Search<'a> {
     stretch: &'a Stretch<'a>,
     playback: Vec<Quat>,

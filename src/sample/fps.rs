@@ -10,6 +10,12 @@ pub struct Fps {
     seconds: u64,
 }
 
+impl Default for Fps {
+    fn default() -> Fps {
+        Fps { frames: 60, seconds: 1 }
+    }
+}
+
 /// A text that is no frame rate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("expected frames per second, such as 60, 23.976 or 30000/1001")]

@@ -59,11 +59,13 @@ pub struct Writing {
     pub encoding: Encoding,
     /// Whether to find out how far playback of them is from the motion.
     pub bound: bool,
+    /// Whether each lasts until the next.
+    pub hold: bool,
 }
 
 impl Default for Writing {
     fn default() -> Writing {
-        Writing { encoding: Encoding::Float, bound: true }
+        Writing { encoding: Encoding::Float, bound: true, hold: false }
     }
 }
 
@@ -147,11 +149,17 @@ fn sample(rotation: &Rotation, timeline: &Timeline, writing: Writing, chunk: usi
     match rotation {
         Rotation::Motion(motion) if writing.bound => {
             let stretch = Stretch { motion, times: &times, exact: &exact, written: &rotations };
-            let bounds = deviation::upper_bounds(&stretch);
+            let bounds = if writing.hold {
+                deviation::held_bounds(&stretch)
+            } else {
+                deviation::upper_bounds(&stretch)
+            };
             facts.deviation = Some(bounds.slerp.to_degrees());
             facts.nlerp = Some(bounds.nlerp.to_degrees());
         }
-        Rotation::Function(at) if writing.bound => facts.measured = Some(measured(at, &times, &rotations)),
+        Rotation::Function(at) if writing.bound => {
+            facts.measured = Some(measured(at, &times, &rotations, writing.hold));
+        }
         Rotation::Motion(_) | Rotation::Function(_) => {}
     }
     rotations.drain(..usize::from(before.is_some()));
@@ -164,17 +172,18 @@ const BETWEEN: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// The largest angle, degrees, between a function and the playback of its samples that
 /// shows at samples and between them.
-fn measured(at: &dyn Fn(f64) -> Quat, times: &[f32], rotations: &[[f32; 4]]) -> f64 {
+fn measured(at: &dyn Fn(f64) -> Quat, times: &[f32], rotations: &[[f32; 4]], hold: bool) -> f64 {
     let off = |t: f64, played: Quat| played.angle_to(at(t)).to_degrees();
     let mut worst: f64 = 0.0;
     for (t, q) in times.windows(2).zip(rotations.windows(2)) {
         let (start, h) = (f64::from(t[0]), f64::from(t[1]) - f64::from(t[0]));
         let (a, b) = (written(q[0]), written(q[1]));
-        let step = (a.conjugate() * b.aligned_to(a)).log();
+        let to = if hold { a } else { b };
+        let step = (a.conjugate() * to.aligned_to(a)).log();
         for u in BETWEEN {
             worst = worst.max(off(start + u * h, a * Quat::exp(step * u)));
         }
-        worst = worst.max(off(start + h, b));
+        worst = worst.max(off(start + h, to)).max(off(start + h, b));
     }
     worst
 }

@@ -21,6 +21,12 @@ pub trait Travel: Sync {
     /// Times at which derivatives may jump, increasing.
     fn knots(&self) -> &[f64];
 
+    /// The Bézier control points of the way between two times, where it is a cubic there
+    /// and known as one.
+    fn cubic(&self, _from: f64, _to: f64) -> Option<[DVec3; 4]> {
+        None
+    }
+
     /// Times at which the velocity jumps, increasing.
     fn jumps(&self) -> &[f64] {
         self.knots()
@@ -28,15 +34,16 @@ pub trait Travel: Sync {
 }
 
 /// Evaluates a path at every time of the timeline and hands the places, x y z as float32,
-/// to `sink`, from first to last. Returns an upper bound of the distance between the path
-/// and the playback of what is written.
+/// to `sink`, from first to last; with `hold` each lasts until the next. Returns an upper
+/// bound of the distance between the path and the playback of what is written.
 pub fn translations<E>(
     travel: &dyn Travel,
     timeline: &Timeline,
+    hold: bool,
     mut sink: impl FnMut(&[[f32; 3]]) -> Result<(), E>,
 ) -> Result<f64, E> {
     let mut deviation: f64 = 0.0;
-    let job = |_, chunk| sample(travel, timeline, chunk);
+    let job = |_, chunk| sample(travel, timeline, hold, chunk);
     in_order(1, timeline.chunks(), job, |_, _, (places, bound): (Vec<[f32; 3]>, f64)| {
         deviation = deviation.max(bound);
         sink(&places)
@@ -44,7 +51,7 @@ pub fn translations<E>(
     Ok(deviation)
 }
 
-fn sample(travel: &dyn Travel, timeline: &Timeline, chunk: usize) -> (Vec<[f32; 3]>, f64) {
+fn sample(travel: &dyn Travel, timeline: &Timeline, hold: bool, chunk: usize) -> (Vec<[f32; 3]>, f64) {
     let (before, times) = timeline.chunk(chunk);
     let times: Vec<f64> = before.into_iter().chain(times).map(f64::from).collect();
     let exact: Vec<DVec3> = times.iter().map(|&t| travel.at(t)).collect();
@@ -53,12 +60,15 @@ fn sample(travel: &dyn Travel, timeline: &Timeline, chunk: usize) -> (Vec<[f32; 
     let mut worst = Worst::new(NEGLIGIBLE * extent(&exact));
     let ends: Vec<f64> = (0..times.len()).map(|i| playback(i).distance(exact[i])).collect();
     worst.note(ends.iter().copied().fold(0.0, f64::max));
-    let line =
-        |i: usize| Line { travel, from: times[i], to: times[i + 1], ends: [playback(i), playback(i + 1)] };
+    let line = |i: usize| {
+        let ends = [playback(i), playback(if hold { i } else { i + 1 })];
+        Line { travel, from: times[i], to: times[i + 1], ends }
+    };
     let lines: Vec<Line> = (0..times.len() - 1).map(line).collect();
     lines.iter().for_each(|line| worst.note(line.at(0.5 * (line.from + line.to))));
-    for (line, ends) in lines.iter().zip(ends.windows(2)) {
-        line.search(&mut worst, (ends[0], ends[1]));
+    for (i, line) in lines.iter().enumerate() {
+        let arrives = if hold { line.at(line.to) } else { ends[i + 1] };
+        line.search(&mut worst, (ends[i], arrives));
     }
     written.drain(..usize::from(before.is_some()));
     (written, worst.bound())
@@ -156,7 +166,7 @@ mod tests {
             let keys = [0.0, 2.0, 5.0];
             let timeline = Timeline::new(&keys, None, fps.parse().unwrap(), key_times).unwrap();
             let mut places = Vec::new();
-            let bound = translations(&CircleThenLine, &timeline, |chunk| {
+            let bound = translations(&CircleThenLine, &timeline, false, |chunk| {
                 places.extend_from_slice(chunk);
                 Ok::<(), ()>(())
             });

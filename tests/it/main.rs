@@ -26,6 +26,8 @@ mod help;
 #[cfg(feature = "cli")]
 mod inspect;
 #[cfg(feature = "cli")]
+mod interpolation;
+#[cfg(feature = "cli")]
 mod outdated;
 #[cfg(feature = "cli")]
 mod paths;

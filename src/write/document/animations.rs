@@ -53,6 +53,8 @@ pub enum Interpolation {
     Linear,
     /// Each lasts until the next.
     Step,
+    /// Hermite's cubic; a sample is tangent in, value, tangent out.
+    CubicSpline,
 }
 
 /// What of a node changes over time.
@@ -121,6 +123,7 @@ impl Builder {
                     interpolation: Checked::Valid(match interpolation {
                         Interpolation::Linear => json::animation::Interpolation::Linear,
                         Interpolation::Step => json::animation::Interpolation::Step,
+                        Interpolation::CubicSpline => json::animation::Interpolation::CubicSpline,
                     }),
                     extensions: None,
                     extras: None,
