@@ -67,6 +67,9 @@ pub struct CameraFacts {
 pub(super) struct Found {
     pub(super) object: Seen,
     pub(super) cameras: Seen,
+    /// An upper bound of how far a corner of the chain is from where it should be, copies
+    /// aside, where it was worked out.
+    pub(super) corners: Option<f64>,
 }
 
 /// What sampling some moves found out, in their order.
@@ -95,7 +98,7 @@ impl Found {
             distances: vec![-f64::MIN_POSITIVE; paths],
             keys_moved: None,
         };
-        Found { object: seen(tracks, paths), cameras: seen(cameras, cameras) }
+        Found { object: seen(tracks, paths), cameras: seen(cameras, cameras), corners: None }
     }
 
     pub(super) fn of(&mut self, cameras: bool) -> &mut Seen {
@@ -123,7 +126,8 @@ impl ClipFacts {
         found: Found,
         cameras: Vec<String>,
     ) -> ClipFacts {
-        let Found { object: Seen { tracks, distances, keys_moved: object_moved }, cameras: watched } = found;
+        let Found { object: Seen { tracks, distances, keys_moved: object_moved }, cameras: watched, .. } =
+            found;
         let largest = |values: Vec<f64>| values.into_iter().fold(0.0, f64::max);
         let of_all = |figure: fn(&TrackFacts) -> Option<f64>| {
             let all: Option<Vec<f64>> = tracks.iter().map(figure).collect();

@@ -4,6 +4,7 @@
 //! about, and how large it becomes. Writing it streams; memory holds the keys.
 
 mod chosen;
+mod corners;
 mod error;
 mod facts;
 mod fewest;
@@ -23,7 +24,7 @@ use crate::read::Order;
 use crate::sample::{Fps, Timeline, TooFine, Writing};
 use crate::write::{Animation, Bin, Buffer, Colour, Glb, LARGEST_GLB, Scene, document, glb_size};
 use chosen::Chosen;
-use facts::Found;
+use facts::{Found, Late};
 use fewest::Unkept;
 use layout::Layout;
 use recipe::recipe;
@@ -146,7 +147,7 @@ impl<'a> ClipPlan<'a> {
         match &self.when {
             When::Grid { .. } => Found::default(),
             When::Chosen { object, cameras } => {
-                Found { object: fewest::seen(object), cameras: fewest::seen(cameras) }
+                Found { object: fewest::seen(object), cameras: fewest::seen(cameras), corners: None }
             }
         }
     }
@@ -297,20 +298,38 @@ impl<'a> Plan<'a> {
         for block in &layout.blocks {
             block.write(self.options.writing, buffer, &mut progress, &mut found)?;
         }
+        if self.options.writing.bound {
+            for (found, plan) in found.iter_mut().zip(&self.clips) {
+                found.corners = corners::displacement(self.ground, plan, self.options.writing);
+            }
+        }
         let facts = found.into_iter().enumerate();
         Ok(facts.map(|(clip, found)| self.facts(clip, layout, found)).collect())
     }
 
-    /// An upper bound of how far a corner of the chain can be from where it should be: each
-    /// rotation that is off turns all that hangs below.
-    fn displacement(&self, plan: &ClipPlan, facts: &ClipFacts) -> Option<f64> {
+    /// An upper bound of how far a corner of the chain can be from where it should be: what
+    /// was found, or what the rotations are off, each of which turns all that hangs below.
+    fn displacement(
+        &self,
+        plan: &ClipPlan,
+        facts: &ClipFacts,
+        corners: Option<f64>,
+        late: &Late,
+    ) -> Option<f64> {
         self.ground.chain_length()?;
-        let turns = plan.object.iter().filter(|(_, a_move)| a_move.rotation().is_some());
-        let off = turns.zip(&facts.tracks).map(|((mover, _), track)| {
-            track.deviation.map(|degrees| degrees.to_radians() * self.ground.reach_below(*mover))
-        });
-        let turned: f64 = off.sum::<Option<f64>>()?;
-        (!facts.tracks.is_empty()).then(|| facts::rounded_up(turned + facts.deviation_units.unwrap_or(0.0)))
+        let turns = || plan.object.iter().filter(|(_, a_move)| a_move.rotation().is_some());
+        let reach = |(mover, _): &(Mover, Move)| self.ground.reach_below(*mover);
+        let sum = |degrees: &mut dyn Iterator<Item = Option<f64>>| -> Option<f64> {
+            turns().zip(degrees).map(|(turn, degrees)| degrees.map(|x| x.to_radians() * reach(turn))).sum()
+        };
+        let off = match corners {
+            Some(corners) => corners + sum(&mut late.degrees.iter().copied())? + late.units,
+            None => {
+                let turned = sum(&mut facts.tracks.iter().map(|track| track.deviation))?;
+                turned + facts.deviation_units.unwrap_or(0.0)
+            }
+        };
+        (!facts.tracks.is_empty()).then(|| facts::rounded_up(off))
     }
 
     fn facts(&self, clip: usize, layout: &Layout, found: Found) -> ClipFacts {
@@ -322,9 +341,10 @@ impl<'a> Plan<'a> {
         let turned = &plan.cameras[..plan.cameras.len() / 2];
         let node = |camera: usize| &self.scene.nodes[self.scene.cameras[camera]];
         let cameras = turned.iter().map(|&(camera, _)| node(camera).name.clone()).collect();
-        let found = found.late(&layout.lateness(&plan.object));
+        let (corners, late) = (found.corners, layout.lateness(&plan.object));
+        let found = found.late(&late);
         let facts = ClipFacts::new(name, plan.scheme.name(), plan.samples(), found, cameras);
-        ClipFacts { displacement_units: self.displacement(plan, &facts), ..facts }
+        ClipFacts { displacement_units: self.displacement(plan, &facts, corners, &late), ..facts }
     }
 }
 

@@ -5,6 +5,7 @@
 //! written numbers can be from the curve. Memory does not grow with the output.
 
 pub(crate) mod blend;
+pub(crate) mod corners;
 pub(crate) mod deviation;
 mod encoding;
 mod fps;

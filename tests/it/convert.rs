@@ -25,9 +25,10 @@ fn a_clip_says_how_it_was_made() {
         assert!(nlerp.len() == 1 && nlerp[0] >= deviation[0], "{nlerp:?}");
         // One box, 1 unit long and square: its far corners are √1.5 from the hinge.
         let displacement = extras["displacementUnits"].take().as_f64().unwrap();
-        let expected = deviation[0].to_radians() * 1.5f64.sqrt();
-        // Each of the figures is rounded up to five digits.
-        assert!((displacement / expected - 1.0).abs() < 2e-4, "{displacement} {expected}");
+        let most = deviation[0].to_radians() * 1.5f64.sqrt();
+        // Whatever the axis, a corner is √½ from it; each figure is up to 5 % above the truth.
+        assert!(displacement <= 1.05 * most, "{displacement} {most}");
+        assert!(displacement >= 0.95 * most * (0.5 / 1.5f64).sqrt(), "{displacement} {most}");
         let expected = json!({
             "dat2glb": env!("CARGO_PKG_VERSION"),
             "scheme": scheme,
