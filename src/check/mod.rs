@@ -15,6 +15,7 @@ mod data;
 mod meshes;
 pub mod motion;
 mod nodes;
+mod proof;
 mod report;
 mod rotations;
 mod structure;

@@ -3,7 +3,8 @@
 //! The file says in its animations' `extras` how it was made; a file that does not say
 //! it (another program wrote it again) needs to be told.
 
-use super::against::{self, Difference};
+use super::against::{self, Difference, Largest};
+use super::proof::{self, Outcome};
 use super::{Code, Report};
 use crate::asset::play::Clip;
 use crate::asset::{self, Asset};
@@ -53,6 +54,9 @@ pub struct NodeMotion {
     pub property: &'static str,
     /// The largest angle or distance allowed, if there is a limit.
     pub limit: Option<f64>,
+    /// Whether it is proven that it stays within the limit at all times. False where there
+    /// is none, and of what nothing is known but its values.
+    pub proven: bool,
     /// At keys, at samples, and between samples.
     #[serde(flatten)]
     pub difference: Difference,
@@ -345,7 +349,7 @@ fn node(
         keys.iter_mut().for_each(|t| *t = f64::from(*t as f32));
     }
     let turned = |t: f64| Quat::to_xyzw(stream.rotation(stream.moment(*copy, t), |t| turned(a_move, t)));
-    let (property, unit, difference) = match a_move {
+    let (property, unit, mut difference) = match a_move {
         Move::Keys(_) | Move::Attitude(_) => {
             ("rotation", "°", against::rotation(asset, clip, index, &keys, &turned)?)
         }
@@ -354,6 +358,28 @@ fn node(
             ("translation", " units", against::translation(asset, clip, index, &keys, &at)?)
         }
     };
+    // What was looked at may keep the limit where other times do not.
+    let outcome = match limit {
+        Some(limit) if difference.largest().off <= *limit && stream.count == 1 => {
+            proven(asset, clip, index, ground, a_move, *limit)?
+        }
+        _ => None,
+    };
+    match outcome {
+        Some(Outcome::Beyond { off, time }) => {
+            difference.between = Largest { off, time, ..difference.between };
+        }
+        Some(Outcome::Open { bound, time }) => {
+            let message = format!(
+                "clip {}, {property} of node {node}: cannot be shown to stay within {:.6}{unit} of the curve: at \
+                 about {time:.6} s it may be {bound:.6}{unit} off",
+                name(clip),
+                limit.unwrap_or_default()
+            );
+            report.add(Code::MotionDiffers, place.clone(), message);
+        }
+        Some(Outcome::Within) | None => {}
+    }
     let worst = difference.largest();
     // Written so that a value that is no number exceeds every limit.
     if let Some(limit) = limit.filter(|&limit| worst.off.is_nan() || worst.off > limit) {
@@ -366,7 +392,28 @@ fn node(
         );
         report.add(Code::MotionDiffers, place, message);
     }
-    Ok(Some(NodeMotion { node: node.clone(), property, limit: *limit, difference }))
+    let proven = outcome == Some(Outcome::Within);
+    Ok(Some(NodeMotion { node: node.clone(), property, limit: *limit, proven, difference }))
+}
+
+/// Tries to prove the limit, where enough is known of the move.
+fn proven(
+    asset: &mut Asset,
+    clip: &Clip,
+    node: usize,
+    ground: &Ground,
+    a_move: &Move,
+    limit: f64,
+) -> Result<Option<Outcome>, Error> {
+    Ok(match a_move {
+        // What is held changes where the file's float32 time has the key, not the curve's.
+        Move::Keys(motion) if motion.is_step() => None,
+        Move::Keys(motion) => proof::rotation(asset, clip, node, motion, limit)?,
+        Move::Travel(travel) => {
+            proof::translation(asset, clip, node, (travel.as_ref(), ground.duration()), limit)?
+        }
+        Move::Attitude(_) => None,
+    })
 }
 
 /// The rotation at a time. What is held until a key changes where the file's float32 time

@@ -148,8 +148,10 @@ fn print(file: &Path, options: &Check, report: &Report, motions: &[ClipMotion]) 
         writeln!(out, "{name}: clip {} against {} with {} ends:", clip.clip, clip.scheme, clip.ends)?;
         for motion in &clip.boxes {
             let unit = if motion.property == "rotation" { "°" } else { " units" };
-            let limit =
-                motion.limit.map_or(String::new(), |limit| format!(" (at most {limit:.6}{unit} allowed)"));
+            let proven = if motion.proven { ", proven" } else { "" };
+            let limit = motion
+                .limit
+                .map_or(String::new(), |limit| format!(" (at most {limit:.6}{unit} allowed{proven})"));
             let kinds = [
                 ("keys", motion.difference.keys),
                 ("samples", motion.difference.samples),

@@ -16,6 +16,7 @@ mod value;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use cubic::Hermite;
 pub use cubic::{CubicKeys, Flat, cubic_numbers, cubic_rotation};
 pub use curve::{Attitude, Curve, Travelling, Turning};
 pub use value::{Numbers, OtherBlend, Step, Value};

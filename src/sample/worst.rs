@@ -50,6 +50,12 @@ impl Worst {
         Worst { found: 0.0, bound: 0.0, negligible, limit: f64::INFINITY }
     }
 
+    /// Nothing is known; stretches are refined until they are within a limit, or something
+    /// beyond it is found.
+    pub(crate) fn proving(limit: f64) -> Worst {
+        Worst { found: limit, bound: 0.0, negligible: 0.0, limit }
+    }
+
     /// One stretch more, refined until its bound is within a limit, or something beyond
     /// it found.
     pub(crate) fn one_more(&self, limit: f64) -> Worst {

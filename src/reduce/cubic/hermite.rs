@@ -9,9 +9,9 @@ const UP: f64 = 1.0 + 1e-12;
 
 /// A cubic over u in 0..=1, by its ends and its derivatives by u there.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::reduce) struct Hermite<const N: usize> {
-    pub(in crate::reduce) ends: [Numbers<N>; 2],
-    pub(in crate::reduce) slopes: [Numbers<N>; 2],
+pub(crate) struct Hermite<const N: usize> {
+    pub(crate) ends: [Numbers<N>; 2],
+    pub(crate) slopes: [Numbers<N>; 2],
 }
 
 /// Where a fitted cubic meets its curve between the ends.
@@ -25,7 +25,7 @@ const TAN_EIGHTH: f64 = std::f64::consts::SQRT_2 - 1.0;
 
 impl<const N: usize> Hermite<N> {
     /// The cubic between two ends that meets `inner` at the two places of a good fit.
-    pub(in crate::reduce) fn through(ends: [Numbers<N>; 2], inner: impl Fn(f64) -> Numbers<N>) -> Hermite<N> {
+    pub(crate) fn through(ends: [Numbers<N>; 2], inner: impl Fn(f64) -> Numbers<N>) -> Hermite<N> {
         let flat = Hermite { ends, slopes: [Numbers::ZERO; 2] };
         let [a, b] = MEETS.map(|u| inner(u) - flat.at(u));
         // u(1−u)² m₀ − u²(1−u) m₁ at u and at 1 − u: two equations, mirror images.
@@ -37,7 +37,7 @@ impl<const N: usize> Hermite<N> {
     }
 
     /// The value at u.
-    pub(in crate::reduce) fn at(&self, u: f64) -> Numbers<N> {
+    pub(crate) fn at(&self, u: f64) -> Numbers<N> {
         let v = 1.0 - u;
         let ends = self.ends[0] * (v * v * (1.0 + 2.0 * u)) + self.ends[1] * (u * u * (1.0 + 2.0 * v));
         ends + self.slopes[0] * (u * v * v) - self.slopes[1] * (u * u * v)
@@ -54,7 +54,7 @@ impl<const N: usize> Hermite<N> {
     }
 
     /// Bézier's control points of the part from u = a to u = b.
-    pub(in crate::reduce) fn control_points(&self, a: f64, b: f64) -> [Numbers<N>; 4] {
+    pub(crate) fn control_points(&self, a: f64, b: f64) -> [Numbers<N>; 4] {
         let (from, to) = (self.at(a), self.at(b));
         let third = (b - a) / 3.0;
         let slope = |u: f64| self.derivatives(u)[0] * third;
@@ -133,7 +133,7 @@ impl Flat<4> for Quat {
 
 impl<const N: usize> Hermite<N> {
     /// Upper bounds of the speed and acceleration, by u, of what is shown from u = a to b.
-    pub(in crate::reduce) fn rates<V: Flat<N>>(&self, a: f64, b: f64) -> Rates {
+    pub(crate) fn rates<V: Flat<N>>(&self, a: f64, b: f64) -> Rates {
         let middle = 0.5 * (a + b);
         V::shown_rates(self.at(middle), self.derivatives(middle), 0.5 * (b - a))
     }

@@ -12,6 +12,7 @@ mod search;
 mod tests;
 
 pub use hermite::Flat;
+pub(crate) use hermite::Hermite;
 
 use super::search::Stuck;
 use super::value::{Numbers, Value};
