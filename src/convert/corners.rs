@@ -11,7 +11,7 @@ use std::borrow::Cow;
 
 /// Longer clips are bounded by the sum of what their rotations are off: looking at all of
 /// them at once would take longer than making them.
-const MOST_KEYS: usize = 1 << 18;
+const MOST_KEYS: usize = 1 << 16;
 
 /// What a move is played by.
 type Keys<'p> = (&'p [f32], Cow<'p, Values>);

@@ -45,40 +45,33 @@ pub(crate) struct Chain<'a> {
 /// Parts that are bounded at once.
 const BLOCK: usize = 1024;
 /// How often a part is halved before its own rates are worked out.
-const CHEAP: u32 = 4;
+const CHEAP: u32 = 3;
 
 /// An upper bound of the distance between any corner and its playback, at any time.
 pub(crate) fn largest_displacement(chain: &Chain) -> f64 {
-    let times = chain.moments();
-    let parts: Vec<[f64; 2]> = times.windows(2).map(|pair| [pair[0], pair[1]]).collect();
-    let looked = |block: &[[f64; 2]]| {
-        let mut cursor = Cursor::default();
-        let at = |&[from, to]: &[f64; 2]| {
-            let stretch = chain.stretch(&mut cursor, from, to);
-            stretch.at(0.5 * (from + to)).max(stretch.at(from)).max(stretch.at(to))
-        };
-        block.iter().map(at).fold(0.0, f64::max)
-    };
+    let moments = chain.moments();
+    // What is found at the moments and half way says early what is worth refining.
+    let looked: Vec<Vec<[f64; 3]>> = blocks(&moments).map(|block| chain.look(block)).collect();
     let mut worst = Worst::new(2.0 * NEGLIGIBLE * chain.reach());
-    worst.note(parts.par_chunks(BLOCK).map(looked).reduce(|| 0.0, f64::max));
-    let bounded = |block: &[[f64; 2]]| {
-        let (mut cursor, mut worst) = (Cursor::default(), worst);
-        for &[from, to] in block {
-            let stretch = chain.stretch(&mut cursor, from, to);
-            let part = Part { from, to, at_from: stretch.at(from), at_to: stretch.at(to) };
-            let rates = stretch.whole_rates();
-            worst.search(&stretch, part, rates, CHEAP);
-        }
-        worst.bound()
-    };
-    let bound = parts.par_chunks(BLOCK).map(bounded).reduce(|| worst.found, f64::max);
-    bound + chain.uneven_lengths()
+    looked.iter().flatten().flatten().for_each(|&off| worst.note(off));
+    let bounds = blocks(&moments).zip(&looked).map(|(block, looked)| chain.bound(block, looked, worst));
+    bounds.reduce(|| worst.found, f64::max) + chain.uneven_lengths()
 }
 
-/// Where each limb's keys were found last.
+/// The moments in blocks, each of which begins with the last of the one before.
+fn blocks(moments: &[f64]) -> impl IndexedParallelIterator<Item = &[f64]> {
+    let starts = (moments.len() - 1).div_ceil(BLOCK);
+    (0..starts).into_par_iter().map(move |i| {
+        let from = i * BLOCK;
+        &moments[from..moments.len().min(from + BLOCK + 1)]
+    })
+}
+
+/// Where each limb's keys and pieces were found last.
 #[derive(Default)]
 struct Cursor {
     keys: Vec<usize>,
+    pieces: Vec<Option<Piece>>,
 }
 
 impl Cursor {
@@ -96,9 +89,47 @@ impl Cursor {
         }
         *key
     }
+
+    /// The piece of a motion at a time, of the limb of that number.
+    fn piece(&mut self, limb: usize, motion: &Motion, t: f64) -> Piece {
+        if self.pieces.len() <= limb {
+            self.pieces.resize(limb + 1, None);
+        }
+        match self.pieces[limb] {
+            Some(piece) if piece.start <= t && t < piece.end => piece,
+            _ => *self.pieces[limb].insert(motion.piece_at(t)),
+        }
+    }
 }
 
 impl Chain<'_> {
+    /// The distances at the start, half way and at the end of the stretches between moments.
+    fn look(&self, moments: &[f64]) -> Vec<[f64; 3]> {
+        let mut cursor = Cursor::default();
+        let mut before = None;
+        let look = |pair: &[f64]| {
+            let stretch = self.stretch(&mut cursor, pair[0], pair[1]);
+            let from = before.unwrap_or_else(|| stretch.at(pair[0]));
+            let to = stretch.at(pair[1]);
+            before = Some(to);
+            [from, stretch.at(0.5 * (pair[0] + pair[1])), to]
+        };
+        moments.windows(2).map(look).collect()
+    }
+
+    /// An upper bound over all stretches, from what was found there.
+    fn bound(&self, moments: &[f64], looked: &[[f64; 3]], mut worst: Worst) -> f64 {
+        let mut cursor = Cursor::default();
+        for (pair, &[at_from, at_middle, at_to]) in moments.windows(2).zip(looked) {
+            let (from, to, middle) = (pair[0], pair[1], 0.5 * (pair[0] + pair[1]));
+            let stretch = self.stretch(&mut cursor, from, to);
+            let rates = stretch.whole_rates();
+            worst.search(&stretch, Part { from, to: middle, at_from, at_to: at_middle }, rates, CHEAP);
+            worst.search(&stretch, Part { from: middle, to, at_from: at_middle, at_to }, rates, CHEAP);
+        }
+        worst.bound()
+    }
+
     /// All times at which anything may cease to be smooth, increasing.
     fn moments(&self) -> Vec<f64> {
         let mut times: Vec<f64> = Vec::new();
@@ -132,7 +163,8 @@ impl Chain<'_> {
             let key = cursor.key(i + 1, limb.times, from);
             let between = Between::new(limb.times, limb.written, key).map(written);
             let step = between.ends[0].aligned_to(between.ends[1]).conjugate() * between.ends[1];
-            Turn { piece: limb.motion.piece_at(from), start: between.ends[0], way: step.log(), between }
+            let piece = cursor.piece(i, &limb.motion, from);
+            Turn { piece, start: between.ends[0], way: step.log(), between }
         });
         let turns = turns.collect();
         let trail = self.root.as_ref().map(|trail| {
