@@ -8,8 +8,8 @@
 //! finds as few times as a tolerance allows, [`mod@write`] makes a glTF file of
 //! the samples, [`asset`] loads any glTF file back, [`check`] judges it, [`rewrite`]
 //! takes keys out of it and `render` draws it. [`convert`] is these stages in a row.
-//! [`compare`] puts the schemes side by side, [`diff`] two files, and [`report`]
-//! writes findings for other programs.
+//! [`compare`] puts the schemes side by side, [`diff`] two files, `plot` draws curves as
+//! diagrams, and [`report`] writes findings for other programs.
 //!
 //! # Conventions
 //!
@@ -31,6 +31,8 @@ pub mod math;
 pub mod moves;
 pub mod orient;
 pub mod path;
+#[cfg(feature = "plot")]
+pub mod plot;
 pub mod read;
 pub mod reduce;
 #[cfg(feature = "render")]

@@ -13,6 +13,9 @@ use gltf::json::Node;
 /// Where between two samples the file is compared, as parts of the interval.
 const BETWEEN: [f64; 3] = [0.25, 0.5, 0.75];
 
+/// In how many parts an interval is looked at over time.
+const PARTS: u32 = 16;
+
 /// The largest difference at some kind of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Largest {
@@ -52,52 +55,112 @@ impl Difference {
     }
 }
 
-/// Compares the rotation of `node` in `clip` with `curve`, which gives a
-/// quaternion x y z w for a time in seconds: at the times of the file's keys,
+/// What a node does by a curve, at a time in seconds.
+pub enum Curve<'a> {
+    /// It turns: a quaternion x y z w.
+    Rotation(&'a dyn Fn(f64) -> [f64; 4]),
+    /// It is moved.
+    Translation(&'a dyn Fn(f64) -> [f64; 3]),
+}
+
+impl Curve<'_> {
+    fn property(&self) -> Property {
+        match self {
+            Curve::Rotation(_) => Property::Rotation,
+            Curve::Translation(_) => Property::Translation,
+        }
+    }
+
+    /// What a node has that nothing moves.
+    fn resting(&self, node: &Node) -> Vec<f64> {
+        match self {
+            Curve::Rotation(_) => node.rotation.unwrap_or_default().0.map(f64::from).to_vec(),
+            Curve::Translation(_) => node.translation.unwrap_or_default().map(f64::from).to_vec(),
+        }
+    }
+
+    /// How far a value is off at a time, degrees or units.
+    fn off(&self, value: &[f64], t: f64) -> f64 {
+        match self {
+            Curve::Rotation(curve) => degrees(four(value), curve(t)),
+            Curve::Translation(curve) => {
+                let wanted = curve(t);
+                let part = |i: usize| value.get(i).copied().unwrap_or(f64::NAN) - wanted[i];
+                part(0).hypot(part(1)).hypot(part(2))
+            }
+        }
+    }
+}
+
+/// Compares what `clip` does to `node` with a curve: at the times of the file's keys,
 /// between them, and at `keys`, the input's key times in rising order.
 ///
-/// A node that the clip does not turn keeps the rotation it has.
-pub fn rotation(
+/// A node that the clip does not move stays as it is.
+pub fn compare(
     asset: &mut Asset,
     clip: &Clip,
     node: usize,
     keys: &[f64],
-    curve: &dyn Fn(f64) -> [f64; 4],
+    curve: &Curve,
 ) -> Result<Difference, Error> {
-    let resting = |node: &Node| node.rotation.unwrap_or_default().0.map(f64::from).to_vec();
-    let off = |value: &[f64], t: f64| degrees(four(value), curve(t));
-    property(asset, clip, (node, Property::Rotation), keys, &resting, &off)
-}
-
-/// Compares the translation of `node` in `clip` with `curve`, as [`rotation`] does.
-pub fn translation(
-    asset: &mut Asset,
-    clip: &Clip,
-    node: usize,
-    keys: &[f64],
-    curve: &dyn Fn(f64) -> [f64; 3],
-) -> Result<Difference, Error> {
-    let resting = |node: &Node| node.translation.unwrap_or_default().map(f64::from).to_vec();
-    let off = |value: &[f64], t: f64| {
-        let part = |i: usize| value.get(i).copied().unwrap_or(f64::NAN) - curve(t)[i];
-        part(0).hypot(part(1)).hypot(part(2))
+    let mut difference = Difference::default();
+    let mut note = |at: At, time: f64, off: f64| match at {
+        At::Key => difference.keys.note(off, time),
+        At::Sample => difference.samples.note(off, time),
+        At::Between => difference.between.note(off, time),
     };
-    property(asset, clip, (node, Property::Translation), keys, &resting, &off)
+    visit(asset, clip, node, &Look { keys, between: &BETWEEN, curve }, &mut note)?;
+    Ok(difference)
 }
 
-/// Compares what a clip does to a property, or what rests where it does nothing.
-fn property(
+/// How far off a node is over time: times in rising order, each with degrees or units, at
+/// the file's keys and at every sixteenth of the way between them. A node that the clip does
+/// not move is looked at in the same way between `keys`.
+pub fn over_time(
     asset: &mut Asset,
     clip: &Clip,
-    (node, property): (usize, Property),
+    node: usize,
     keys: &[f64],
-    resting: &dyn Fn(&Node) -> Vec<f64>,
-    off: &dyn Fn(&[f64], f64) -> f64,
-) -> Result<Difference, Error> {
+    curve: &Curve,
+    note: &mut dyn FnMut(f64, f64),
+) -> Result<(), Error> {
+    let moved = clip.channels.iter().any(|c| c.node == node && c.property == curve.property());
+    let keys = if moved { &[] } else { keys };
+    let between: Vec<f64> = (1..PARTS).map(|i| f64::from(i) / f64::from(PARTS)).collect();
+    let look = Look { keys, between: &between, curve };
+    visit(asset, clip, node, &look, &mut |_, time, off| note(time, off))
+}
+
+/// When to look, and what there should be.
+struct Look<'a> {
+    keys: &'a [f64],
+    between: &'a [f64],
+    curve: &'a Curve<'a>,
+}
+
+/// What kind of time is looked at.
+enum At {
+    Key,
+    Sample,
+    Between,
+}
+
+/// Compares what a clip does to a node, or how the node rests where it does nothing.
+fn visit(
+    asset: &mut Asset,
+    clip: &Clip,
+    node: usize,
+    look: &Look,
+    note: &mut dyn FnMut(At, f64, f64),
+) -> Result<(), Error> {
+    let property = look.curve.property();
     let channel = clip.channels.iter().find(|channel| channel.node == node && channel.property == property);
     match (channel, asset.root().nodes.get(node)) {
-        (Some(channel), _) => played(asset, channel, keys, off),
-        (None, Some(stored)) => Ok(rested(&resting(stored), keys, off)),
+        (Some(channel), _) => played(asset, channel, look, note),
+        (None, Some(stored)) => {
+            rested(&look.curve.resting(stored), look, note);
+            Ok(())
+        }
         (None, None) => Err(Error::data(format!("/nodes/{node}"), "there is no such node")),
     }
 }
@@ -111,11 +174,11 @@ struct Sample {
 fn played(
     asset: &mut Asset,
     channel: &Channel,
-    keys: &[f64],
-    off: &dyn Fn(&[f64], f64) -> f64,
-) -> Result<Difference, Error> {
-    let mut difference = Difference::default();
-    let mut keys = keys.iter().copied().peekable();
+    look: &Look,
+    note: &mut dyn FnMut(At, f64, f64),
+) -> Result<(), Error> {
+    let off = |value: &[f64], t: f64| look.curve.off(value, t);
+    let mut keys = look.keys.iter().copied().peekable();
     let mut previous: Option<Sample> = None;
     let mut blocks = Keys::new(channel);
     while let Some(block) = blocks.next(asset)? {
@@ -124,32 +187,30 @@ fn played(
             let sample =
                 Sample { time: f64::from(time), stored: stored.iter().copied().map(f64::from).collect() };
             let value = at_key(channel, &sample.stored).to_vec();
-            difference.samples.note(off(&value, sample.time), sample.time);
+            if let Some(previous) = &previous {
+                for u in look.between {
+                    let time = previous.time + u * (sample.time - previous.time);
+                    let got = at(channel, previous, &sample, time);
+                    note(At::Between, time, off(&got, time));
+                }
+            }
+            note(At::Sample, sample.time, off(&value, sample.time));
             // Keys up to this sample: before the first it holds.
             while let Some(key) = keys.next_if(|&key| key <= sample.time) {
                 let got = match &previous {
                     Some(previous) if key < sample.time => at(channel, previous, &sample, key),
                     _ => value.clone(),
                 };
-                difference.keys.note(off(&got, key), key);
-            }
-            if let Some(previous) = &previous {
-                for u in BETWEEN {
-                    let time = previous.time + u * (sample.time - previous.time);
-                    let got = at(channel, previous, &sample, time);
-                    difference.between.note(off(&got, time), time);
-                }
+                note(At::Key, key, off(&got, key));
             }
             previous = Some(sample);
         }
     }
     if let Some(last) = previous {
         let value = at_key(channel, &last.stored).to_vec();
-        for key in keys {
-            difference.keys.note(off(&value, key), key);
-        }
+        keys.for_each(|key| note(At::Key, key, off(&value, key)));
     }
-    Ok(difference)
+    Ok(())
 }
 
 /// The channel's value at a time between two neighbouring keys.
@@ -164,16 +225,14 @@ fn at(channel: &Channel, from: &Sample, to: &Sample, time: f64) -> Vec<f64> {
     }
 }
 
-fn rested(value: &[f64], keys: &[f64], off: &dyn Fn(&[f64], f64) -> f64) -> Difference {
-    let mut difference = Difference::default();
-    for (i, &key) in keys.iter().enumerate() {
-        difference.keys.note(off(value, key), key);
-        for u in keys.get(i + 1).into_iter().flat_map(|_| BETWEEN) {
-            let time = key + u * (keys[i + 1] - key);
-            difference.between.note(off(value, time), time);
+fn rested(value: &[f64], look: &Look, note: &mut dyn FnMut(At, f64, f64)) {
+    for (i, &key) in look.keys.iter().enumerate() {
+        note(At::Key, key, look.curve.off(value, key));
+        for u in look.keys.get(i + 1).into_iter().flat_map(|_| look.between) {
+            let time = key + u * (look.keys[i + 1] - key);
+            note(At::Between, time, look.curve.off(value, time));
         }
     }
-    difference
 }
 
 fn four(q: &[f64]) -> [f64; 4] {
@@ -223,7 +282,7 @@ mod tests {
 
     fn compared(asset: &mut Asset, keys: &[f64], curve: &dyn Fn(f64) -> [f64; 4]) -> Difference {
         let clip = asset.clips().remove(0);
-        rotation(asset, &clip, 0, keys, curve).unwrap()
+        compare(asset, &clip, 0, keys, &Curve::Rotation(curve)).unwrap()
     }
 
     #[track_caller]
@@ -282,5 +341,20 @@ mod tests {
         let found = compared(&mut asset, &[0.0, 1.0], &|t| turn(8.0 * t));
         near(found.keys, 8.0, 1.0);
         near(found.between, 6.0, 0.75);
+    }
+
+    #[test]
+    fn over_time_is_in_order_and_peaks_half_way() {
+        let mut asset = file("LINEAR", &[0.0, 0.5, 1.0], &[0.0, 10.0, 40.0]);
+        let (clip, mut seen) = (asset.clips().remove(0), Vec::new());
+        let curve = |t: f64| turn(40.0 * t * t);
+        let mut note = |time: f64, off: f64| seen.push((time, off));
+        over_time(&mut asset, &clip, 0, &[0.0, 1.0], &Curve::Rotation(&curve), &mut note).unwrap();
+        assert_eq!(seen.len(), 33);
+        for (i, (time, off)) in seen.into_iter().enumerate() {
+            assert_eq!(time, i as f64 / 32.0);
+            let u = 2.0 * time % 1.0;
+            assert!((off - 10.0 * u * (1.0 - u)).abs() < 1e-5, "{time}: {off}");
+        }
     }
 }

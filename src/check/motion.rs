@@ -3,7 +3,11 @@
 //! The file says in its animations' `extras` how it was made; a file that does not say
 //! it (another program wrote it again) needs to be told.
 
-use super::against::{self, Difference, Largest};
+mod over_time;
+
+pub use over_time::{Limit, Watched, over_time};
+
+use super::against::{self, Curve, Difference, Largest};
 use super::proof::{self, Outcome};
 use super::{Code, Report};
 use crate::asset::play::Clip;
@@ -72,6 +76,9 @@ pub enum Error {
          given); nodes are matched by name"
     )]
     NoRecipe,
+    /// A clip has no node of a name that the input moves.
+    #[error("clip {0}: expected a node named {1}, which the input moves, found none")]
+    NoNode(String, String),
     /// A clip says a scheme or ends that this version does not know.
     #[error("clip {0} says that it was made by {1}, which this version does not know")]
     Unknown(String, String),
@@ -115,6 +122,8 @@ struct Recipe {
     deviation_degrees: Vec<Option<f64>>,
     measured_degrees: Vec<Option<f64>>,
     deviation_units: Option<f64>,
+    tolerance: Option<f64>,
+    tolerance_distance: Option<f64>,
 }
 
 impl Default for Recipe {
@@ -145,6 +154,8 @@ impl Default for Recipe {
             deviation_degrees: Vec::new(),
             measured_degrees: Vec::new(),
             deviation_units: None,
+            tolerance: None,
+            tolerance_distance: None,
         }
     }
 }
@@ -206,6 +217,11 @@ pub fn frame(asset: &Asset) -> Option<Frame> {
     recipes.filter_map(|recipe| Frame::from_name(recipe.frame.as_deref()?)).next()
 }
 
+/// Whether any clip of the file says how it was made.
+pub fn says(asset: &Asset) -> bool {
+    (0..asset.root().animations.len()).any(|i| recipe(asset, i).is_some())
+}
+
 fn recipe(asset: &Asset, animation: usize) -> Option<Recipe> {
     let recipe: Recipe =
         serde_json::from_str(asset.root().animations.get(animation)?.extras.as_ref()?.get()).ok()?;
@@ -261,15 +277,19 @@ impl Limits {
     }
 
     fn next(&mut self, a_move: &Move) -> Option<f64> {
+        let stated = self.stated(a_move);
         match a_move {
             // float32 players lose a few of its steps.
-            Move::Travel(_) => {
-                self.given.max_distance.or(self.units.map(|bound| bound * (1.0 + MARGIN) + 1e-6))
-            }
-            Move::Keys(_) | Move::Attitude(_) => {
-                let stored = self.degrees.next().flatten();
-                self.given.max_error.or(stored.map(|bound| bound + MARGIN))
-            }
+            Move::Travel(_) => self.given.max_distance.or(stated.map(|bound| bound * (1.0 + MARGIN) + 1e-6)),
+            Move::Keys(_) | Move::Attitude(_) => self.given.max_error.or(stated.map(|bound| bound + MARGIN)),
+        }
+    }
+
+    /// What the file states of the next move.
+    fn stated(&mut self, a_move: &Move) -> Option<f64> {
+        match a_move {
+            Move::Travel(_) => self.units,
+            Move::Keys(_) | Move::Attitude(_) => self.degrees.next().flatten(),
         }
     }
 }
@@ -336,31 +356,21 @@ fn node(
     report: &mut Report,
 ) -> Result<Option<NodeMotion>, Error> {
     let place = format!("/animations/{}", clip.animation);
-    let Wanted { node, copy, a_move, limit } = wanted;
+    let Wanted { node, a_move, limit, .. } = wanted;
     let found = asset.root().nodes.iter().position(|n| n.name.as_deref() == Some(node.as_str()));
     let Some(index) = found else {
         let message = format!("expected a node named {node}, which the input moves, found none");
         report.add(Code::MotionDiffers, place, message);
         return Ok(None);
     };
-    let stream = ground.stream();
-    let mut keys = keys(ground.knots(), stream, *copy, clip.duration);
-    if matches!(a_move, Move::Keys(motion) if motion.is_step()) {
-        keys.iter_mut().for_each(|t| *t = f64::from(*t as f32));
-    }
-    let turned = |t: f64| Quat::to_xyzw(stream.rotation(stream.moment(*copy, t), |t| turned(a_move, t)));
-    let (property, unit, mut difference) = match a_move {
-        Move::Keys(_) | Move::Attitude(_) => {
-            ("rotation", "°", against::rotation(asset, clip, index, &keys, &turned)?)
-        }
-        Move::Travel(travel) => {
-            let at = |t: f64| stream.place(stream.moment(*copy, t), |t| travel.at(t)).to_array();
-            ("translation", " units", against::translation(asset, clip, index, &keys, &at)?)
-        }
-    };
+    let keys = compared_keys(ground, clip, wanted);
+    let (property, unit) =
+        if a_move.travel().is_some() { ("translation", " units") } else { ("rotation", "°") };
+    let mut difference =
+        with_curve(ground, wanted, |curve| against::compare(asset, clip, index, &keys, curve))?;
     // What was looked at may keep the limit where other times do not.
     let outcome = match limit {
-        Some(limit) if difference.largest().off <= *limit && stream.count == 1 => {
+        Some(limit) if difference.largest().off <= *limit && ground.stream().count == 1 => {
             proven(asset, clip, index, ground, a_move, *limit)?
         }
         _ => None,
@@ -414,6 +424,29 @@ fn proven(
         }
         Move::Attitude(_) => None,
     })
+}
+
+/// When a move is compared besides the file's own times.
+fn compared_keys(ground: &Ground, clip: &Clip, wanted: &Wanted) -> Vec<f64> {
+    let mut keys = keys(ground.knots(), ground.stream(), wanted.copy, clip.duration);
+    if matches!(&wanted.a_move, Move::Keys(motion) if motion.is_step()) {
+        keys.iter_mut().for_each(|t| *t = f64::from(*t as f32));
+    }
+    keys
+}
+
+/// What a move should do over time, as the comparison takes it.
+fn with_curve<T>(ground: &Ground, wanted: &Wanted, with: impl FnOnce(&Curve) -> T) -> T {
+    let Wanted { copy, a_move, .. } = wanted;
+    let stream = ground.stream();
+    match a_move {
+        Move::Keys(_) | Move::Attitude(_) => with(&Curve::Rotation(&|t| {
+            Quat::to_xyzw(stream.rotation(stream.moment(*copy, t), |t| turned(a_move, t)))
+        })),
+        Move::Travel(travel) => {
+            with(&Curve::Translation(&|t| stream.place(stream.moment(*copy, t), |t| travel.at(t)).to_array()))
+        }
+    }
 }
 
 /// The rotation at a time. What is held until a key changes where the file's float32 time

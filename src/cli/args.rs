@@ -1,6 +1,11 @@
 //! The command line: commands, options, help.
 
 mod keys;
+#[cfg(feature = "plot")]
+mod plot;
+
+#[cfg(feature = "plot")]
+pub(crate) use plot::Plot;
 
 use super::camera::CameraSpec;
 use clap::builder::{PossibleValue, TypedValueParser, ValueParser};
@@ -66,6 +71,12 @@ pub(crate) enum Command {
     /// motion goes beyond its keys (overshoot) and off the arc between them (stray), degrees;
     /// how many keys playback needs to stay within so many degrees of it, and their bytes.
     Compare(Compare),
+    /// Draw curves as diagrams: SVG or PNG
+    ///
+    /// Quaternions' parts over time, speeds, a path from its sides, where axes point, or how
+    /// far a file's playback is off its curve; several schemes in one frame.
+    #[cfg(feature = "plot")]
+    Plot(Plot),
     /// Print a small input to start from
     Example(Example),
     /// Print a completion script for a shell
@@ -755,8 +766,11 @@ fn tolerance(text: &str) -> Result<f64, String> {
     value.ok_or_else(|| "expected a number above 0, such as 0.01".to_owned())
 }
 
-#[cfg(feature = "render")]
+#[cfg(any(feature = "render", feature = "plot"))]
 fn size(text: &str) -> Result<(u32, u32), String> {
+    #[cfg(not(feature = "render"))]
+    use dat2glb::plot::MOST_PIXELS;
+    #[cfg(feature = "render")]
     use dat2glb::render::MOST_PIXELS;
     let side = |text: &str| text.parse().ok().filter(|n| (1..=MOST_PIXELS).contains(n));
     let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some((side(w)?, side(h)?)));
@@ -789,6 +803,7 @@ pub(crate) fn with_convert_spelled_out(mut arguments: Vec<OsString>) -> Vec<OsSt
             "reduce",
             "sample",
             "compare",
+            "plot",
             "example",
             "completions",
             "man",

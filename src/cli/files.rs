@@ -34,6 +34,9 @@ pub(super) struct Gathered {
     pub(super) inputs: Inputs,
     /// In whose axes they are given, where one of them says so or is so by its kind.
     pub(super) frame: Option<Frame>,
+    /// In whose axes rows of rotations are, where they are not as their path's.
+    #[cfg_attr(not(feature = "plot"), expect(dead_code))]
+    pub(super) rows: Option<Frame>,
     /// Their file names without folders: rotations, then path.
     pub(super) names: Vec<String>,
 }
@@ -45,7 +48,7 @@ pub(super) fn gather(
     frame: Option<Frame>,
 ) -> Result<Gathered, Failure> {
     let mut inputs = Inputs { keyframes: None, path: None, cameras: Vec::new() };
-    let (mut given, mut names) = (frame, Vec::new());
+    let (mut given, mut rows, mut names) = (frame, None, Vec::new());
     for path in paths {
         let name = display_name(path);
         let twice = |what: &str| Failure::usage(format!("{name}: expected {what} only once"));
@@ -58,16 +61,21 @@ pub(super) fn gather(
                 continue;
             }
             _ if inputs.keyframes.is_some() => return Err(twice("rotations")),
-            Input::Keyframes(keyframes) => inputs.keyframes = Some(keyframes),
+            Input::Keyframes(keyframes) => {
+                // These are never turned into other axes.
+                rows = Some(Frame::Gltf);
+                inputs.keyframes = Some(keyframes);
+            }
             Input::Rotations(file) => {
-                given = given.or(file.frame).or(Some(file.rotations.usual_frame()));
+                let own = frame.or(file.frame).unwrap_or(file.rotations.usual_frame());
+                (given, rows) = (given.or(Some(own)), Some(own));
                 inputs.keyframes = Some(rotation_keys(file, frame));
             }
             _ => return Err(Failure::refused(format!("{name}: this kind of input cannot be converted"))),
         }
         names.insert(0, short_name(path));
     }
-    Ok(Gathered { inputs, frame: given, names })
+    Ok(Gathered { inputs, frame: given, rows, names })
 }
 
 impl Gathered {

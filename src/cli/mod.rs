@@ -12,6 +12,8 @@ mod exit;
 mod files;
 mod inspect;
 mod output;
+#[cfg(feature = "plot")]
+mod plot;
 mod progress;
 mod reduce;
 mod sample;
@@ -60,6 +62,8 @@ pub(crate) fn run(arguments: Vec<OsString>) -> ExitCode {
         Command::Reduce(options) => reduce::run(&options),
         Command::Sample(options) => sample::run(&options),
         Command::Compare(options) => compare::run(&options),
+        #[cfg(feature = "plot")]
+        Command::Plot(options) => plot::run(&options),
         Command::Example(options) => example::run(&options),
         Command::Completions { shell } => completions(shell),
         Command::Man => man(),

@@ -90,8 +90,8 @@ impl Tangent {
     /// At a vector shorter than π.
     fn at(vector: Vec3) -> Tangent {
         let square = vector.dot(vector);
-        let [_, _, c2, c3, c4, c5] = stumpff(4.0 * square);
-        let [_, sinc, s2, s3, ..] = stumpff(square);
+        let [_, _, c2, c3, c4, c5] = stumpff::<6>(4.0 * square);
+        let [_, sinc, s2, s3, ..] = stumpff::<6>(square);
         Tangent {
             vector,
             turning: [2.0 * c2, 4.0 * c3],

@@ -130,9 +130,9 @@ impl<B: Base> Quat<Jet<B>> {
     }
 }
 
-/// The Stumpff functions c₀ … c₅, c_k(x) = Σᵢ (−x)ⁱ / (k + 2i)!, for x ≥ 0: c₀ and c₁
-/// are cos √x and sin √x / √x, and c_k = 1/k! − x c_{k+2}. Source: Stumpff 1959.
-pub(crate) fn stumpff(x: f64) -> [f64; 6] {
+/// The first Stumpff functions c₀, c₁, …, c_k(x) = Σᵢ (−x)ⁱ / (k + 2i)!, for x ≥ 0: c₀ and
+/// c₁ are cos √x and sin √x / √x, and c_k = 1/k! − x c_{k+2}. Source: Stumpff 1959.
+pub(crate) fn stumpff<const N: usize>(x: f64) -> [f64; N] {
     if x < 1.0 {
         // Twelve terms leave less than 1/24! for x below 1.
         return std::array::from_fn(|k| {
@@ -146,9 +146,15 @@ pub(crate) fn stumpff(x: f64) -> [f64; 6] {
             sum
         });
     }
-    let (c0, c1) = x.cos_sinc_of_square();
-    let (c2, c3) = ((1.0 - c0) / x, (1.0 - c1) / x);
-    [c0, c1, c2, c3, (0.5 - c2) / x, (1.0 / 6.0 - c3) / x]
+    let (cos, sinc) = x.cos_sinc_of_square();
+    let (mut c, mut factorial) = ([0.0; N], 1.0);
+    c[..2].copy_from_slice(&[cos, sinc]);
+    for k in 2..N {
+        // From (k − 2)! to (k − 1)!.
+        c[k] = (1.0 / factorial - c[k - 2]) / x;
+        factorial *= (k - 1) as f64;
+    }
+    c
 }
 
 /// Derivatives of c₀ and c₁ from c_k′ = (k c_{k+2} − c_{k+1}) / 2.
@@ -218,7 +224,7 @@ impl Interval {
     /// Ranges of the Stumpff functions over this interval; they fall up to x = π².
     fn stumpff_ranges(self) -> [Interval; 6] {
         const LEAST: [f64; 6] = [-1.0, -0.22, 0.0, 0.0, 0.0, 0.0];
-        let at_lo = stumpff(self.lo.max(0.0));
+        let at_lo: [f64; 6] = stumpff(self.lo.max(0.0));
         let far = self.hi > std::f64::consts::PI.powi(2);
         let at_hi = if far { LEAST } else { stumpff(self.hi.max(0.0)) };
         let top = if far { stumpff(0.0) } else { at_lo };

@@ -8,6 +8,7 @@ use crate::clip::{Body, Clip, Through};
 use crate::curve::{Ends, Motion, Scheme};
 use crate::math::Quat;
 use crate::orient::model_frame;
+use crate::path::Path;
 use crate::read::Keyframes;
 use crate::sample::{Fps, Timeline, TooFine};
 use glam::DVec3;
@@ -236,6 +237,11 @@ impl<'a> Ground<'a> {
     /// empty without a path.
     pub fn trace(&self) -> Vec<(f64, DVec3)> {
         self.way.as_ref().map_or(Vec::new(), Way::trace)
+    }
+
+    /// The path itself, and when it begins on the clock, seconds.
+    pub fn course(&self) -> Option<(&Path, f64)> {
+        self.way.as_ref().map(|way| (&way.path, way.start))
     }
 
     /// The points that shape the path.

@@ -18,4 +18,6 @@ pub use document::{Animation, Channel, Component, Data, Interpolation, Property,
 pub use line::Line;
 pub use mesh::{Material, Mesh, Part};
 pub use scene::{Lens, Node, Object, Scene, Shape};
+#[cfg(feature = "plot")]
+pub(crate) use trace::helix;
 pub use trace::{Colour, Trace};

@@ -102,17 +102,22 @@ fn coloured(line: &[(f64, DVec3)], colour: Colour) -> Vec<(Vec3, [u8; 3])> {
     line.iter().map(|point| (point.1.as_vec3(), ramp(share(point)))).collect()
 }
 
-/// Colours from dark to light for 0 to 1, as shares of light: Green's cubehelix (Bulletin
+/// Colours from dark to light for 0 to 1, as shares of light.
+fn ramp(x: f64) -> [u8; 3] {
+    helix(x).map(light)
+}
+
+/// Colours from dark to light for 0 to 1, as screens show them: Green's cubehelix (Bulletin
 /// of the Astronomical Society of India 39, 2011), which grows evenly in brightness, from
 /// blue over red to green; its dark and light ends are left out, to be seen before both.
-fn ramp(x: f64) -> [u8; 3] {
+pub(crate) fn helix(x: f64) -> [u8; 3] {
     let lightness = 0.25 + 0.5 * x.clamp(0.0, 1.0);
     let angle = std::f64::consts::TAU * (0.5 / 3.0 + 1.0 - 0.9 * x);
     let amplitude = 0.5 * 1.4 * lightness * (1.0 - lightness);
     let (sin, cos) = angle.sin_cos();
     let weights = [[-0.14861, 1.78277], [-0.29227, -0.90649], [1.97294, 0.0]];
     let level = |[c, s]: [f64; 2]| (lightness + amplitude * (c * cos + s * sin)).clamp(0.0, 1.0);
-    weights.map(|weight| light((255.0 * level(weight)).round() as u8))
+    weights.map(|weight| (255.0 * level(weight)).round() as u8)
 }
 
 /// A level as screens show it as a share of light, 255 being all.

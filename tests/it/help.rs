@@ -12,6 +12,8 @@ const COMMANDS: &[&str] = &[
     "reduce",
     "sample",
     "compare",
+    #[cfg(feature = "plot")]
+    "plot",
     "example",
     "completions",
     "man",

@@ -31,6 +31,10 @@ mod interpolation;
 mod outdated;
 #[cfg(feature = "cli")]
 mod paths;
+#[cfg(all(feature = "cli", feature = "plot"))]
+mod plot;
+#[cfg(all(feature = "cli", feature = "plot"))]
+mod plot_outputs;
 #[cfg(feature = "cli")]
 mod reduce;
 #[cfg(feature = "cli")]

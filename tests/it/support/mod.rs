@@ -2,6 +2,8 @@
 
 #[cfg(feature = "cli")]
 pub(crate) mod altered;
+#[cfg(all(feature = "cli", feature = "plot"))]
+pub(crate) mod drawn;
 #[cfg(feature = "cli")]
 pub(crate) mod loaded;
 #[cfg(feature = "cli")]
