@@ -25,6 +25,8 @@ mod fewest;
 mod help;
 #[cfg(feature = "cli")]
 mod inspect;
+#[cfg(all(feature = "cli", feature = "render"))]
+mod moving;
 #[cfg(feature = "cli")]
 mod outdated;
 #[cfg(feature = "cli")]
