@@ -1,11 +1,12 @@
 //! The command line: commands, options, help.
 
 mod keys;
+#[cfg(any(feature = "render", feature = "plot"))]
+mod pixels;
 #[cfg(feature = "plot")]
 mod plot;
-
-#[cfg(feature = "plot")]
-pub(crate) use plot::Plot;
+#[cfg(feature = "render")]
+mod thumbnail;
 
 use super::camera::CameraSpec;
 use clap::builder::{PossibleValue, TypedValueParser, ValueParser};
@@ -20,8 +21,14 @@ use dat2glb::sample::Fps;
 use dat2glb::table::Notation;
 use dat2glb::write::Colour;
 use keys::Keys;
+#[cfg(feature = "render")]
+use pixels::size;
+#[cfg(feature = "plot")]
+pub(crate) use plot::Plot;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
+#[cfg(feature = "render")]
+pub(crate) use thumbnail::Thumbnail;
 
 const EXIT_CODES: &str = "\
 Exit codes: 0 done, 1 input refused, 2 usage, 3 output failed its check, 4 environment \
@@ -55,7 +62,7 @@ pub(crate) enum Command {
     /// axes and its origin. Without limits the differences are told and the exit code is
     /// 0; above a limit it is 3. What only one file has fails under --strict.
     Diff(Diff),
-    /// Draw a picture of a .glb or .gltf at a time of one of its clips
+    /// Draw a .glb or .gltf: at a time, as a contact sheet, as ghosts, or moving
     #[cfg(feature = "render")]
     Thumbnail(Thumbnail),
     /// Say what a file holds: keyframes, .glb or .gltf
@@ -260,31 +267,6 @@ impl ReportFlag {
     pub(crate) fn format(&self) -> Format {
         if self.json { Format::Json } else { self.report }
     }
-}
-
-#[cfg(feature = "render")]
-#[derive(Args, Debug)]
-pub(crate) struct Thumbnail {
-    /// The file to draw: .glb, .gltf
-    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub(crate) file: PathBuf,
-    /// The picture to write; without it FILE.png. `-` writes it to standard output
-    #[arg(short, long, value_name = "OUT.png", value_hint = ValueHint::FilePath)]
-    pub(crate) output: Option<PathBuf>,
-    /// Width and height in pixels
-    #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = size)]
-    pub(crate) size: (u32, u32),
-    /// Seconds, or a share of the clip
-    #[arg(long, value_name = "2.5|50%", default_value = "50%", value_parser = time, allow_hyphen_values = true)]
-    pub(crate) time: dat2glb::render::Time,
-    /// The clip's name; without it the first clip
-    #[arg(long, value_name = "NAME")]
-    pub(crate) clip: Option<String>,
-    #[command(flatten)]
-    pub(crate) renderer: RendererFlag,
-    /// Print errors only
-    #[arg(short, long)]
-    pub(crate) quiet: bool,
 }
 
 #[derive(Args, Debug)]
@@ -766,28 +748,6 @@ fn tolerance(text: &str) -> Result<f64, String> {
     value.ok_or_else(|| "expected a number above 0, such as 0.01".to_owned())
 }
 
-#[cfg(any(feature = "render", feature = "plot"))]
-fn size(text: &str) -> Result<(u32, u32), String> {
-    #[cfg(not(feature = "render"))]
-    use dat2glb::plot::MOST_PIXELS;
-    #[cfg(feature = "render")]
-    use dat2glb::render::MOST_PIXELS;
-    let side = |text: &str| text.parse().ok().filter(|n| (1..=MOST_PIXELS).contains(n));
-    let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some((side(w)?, side(h)?)));
-    sides.ok_or_else(|| format!("expected width and height, 1 to {MOST_PIXELS} pixels each, such as 512x512"))
-}
-
-#[cfg(feature = "render")]
-fn time(text: &str) -> Result<dat2glb::render::Time, String> {
-    use dat2glb::render::Time;
-    let number = |text: &str| text.parse().ok().filter(|x: &f64| x.is_finite() && *x >= 0.0);
-    let time = match text.strip_suffix('%') {
-        Some(percent) => number(percent).map(|percent| Time::Fraction(percent / 100.0)),
-        None => number(text.strip_suffix('s').unwrap_or(text)).map(Time::Seconds),
-    };
-    time.ok_or_else(|| "expected seconds, such as 2.5, or a share of the clip, such as 50%".to_owned())
-}
-
 /// `dat2glb IN.dat [OUT.glb] …` as `dat2glb convert IN.dat [-o OUT.glb] …`.
 ///
 /// A first word that is no command counts as a file where it looks like one; anything
@@ -872,16 +832,5 @@ mod tests {
         assert_eq!(tcb, Tcb { tension: -1.0, continuity: 0.0, bias: 0.5 });
         assert!(parsed("dat2glb a.dat --continuity 1.1").is_err());
         assert!(parsed("dat2glb a.dat --scheme spline").is_err());
-    }
-
-    #[cfg(feature = "render")]
-    #[test]
-    fn sizes_and_times() {
-        use dat2glb::render::Time;
-        assert_eq!(size("640x480"), Ok((640, 480)));
-        assert!(["640", "0x5", "5x99999", "x"].into_iter().all(|text| size(text).is_err()));
-        assert_eq!(time("2.5"), Ok(Time::Seconds(2.5)));
-        assert_eq!(time("50%"), Ok(Time::Fraction(0.5)));
-        assert!(["", "x", "nan", "-1", "%"].into_iter().all(|text| time(text).is_err()));
     }
 }

@@ -1,221 +1,177 @@
-//! Where the camera stands: so that the whole motion stays in view.
-//!
-//! The direction of view is fixed, a three-quarter view from a bit above, with
-//! +Z the front and +Y up. What is left is the camera's place, and that has a
-//! closed form. In the camera's axes a point (x, y, z) is in view of an eye at
-//! (cx, cy, cz) when |x − cx| ≤ (cz − z)·tan and likewise for y. Each edge of
-//! the picture is thus one linear bound, e.g. cz·tan + cx ≥ max(x + z·tan), and
-//! the nearest eye that fulfils all four is found from four maxima.
+//! A camera: where it stands, how it is turned, what its lens takes in.
 
 use glam::{DMat3, DMat4, DVec3, Vec3};
 
-/// From the middle of the motion to the eye.
-const TOWARDS_EYE: DVec3 = DVec3::new(0.62, 0.42, 1.0);
-/// Half the field of view of the picture's shorter side: tan 15°.
-const TAN: f64 = 0.267_949_192_431_122_7;
-/// How much of each half of the picture the motion may fill.
-const FILL: f64 = 0.9;
-
-/// A perspective camera without a far plane.
-#[derive(Clone, Copy, Debug)]
+/// What a picture is seen through.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Frame {
     /// From the world's axes to the camera's: right, up, towards the viewer.
     pub turn: DMat3,
-    /// In the camera's axes.
-    eye: DVec3,
-    /// Half the width and height of what is in view, at distance 1.
-    tan: (f64, f64),
-    near: f64,
+    /// Where the camera stands, in its own axes.
+    pub eye: DVec3,
+    pub lens: Lens,
     /// About the distance of what is looked at; keeps clip space near 1.
-    distance: f64,
+    pub distance: f64,
 }
 
-/// What the points of a motion demand of the camera. Made in any order.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Framing {
-    turn: DMat3,
-    tan: (f64, f64),
-    /// Largest x + z·tan, −x + z·tan, y + z·tan, −y + z·tan.
-    edges: [f64; 4],
-    low: DVec3,
-    high: DVec3,
-}
-
-impl Framing {
-    /// For a picture of this many pixels.
-    pub(crate) fn new(size: (u32, u32)) -> Self {
-        let (width, height) = (f64::from(size.0.max(1)), f64::from(size.1.max(1)));
-        let shorter = width.min(height);
-        Framing {
-            turn: three_quarter_view(),
-            tan: (TAN * width / shorter, TAN * height / shorter),
-            edges: [f64::NEG_INFINITY; 4],
-            low: DVec3::INFINITY,
-            high: DVec3::NEG_INFINITY,
-        }
-    }
-
-    /// Takes one more point of the world in; ignores it when it is not finite.
-    pub(crate) fn add(&mut self, point: DVec3) {
-        let p = self.turn * point;
-        if !p.is_finite() {
-            return;
-        }
-        let (across, up) = (p.z * self.tan.0 * FILL, p.z * self.tan.1 * FILL);
-        let bounds = [p.x + across, across - p.x, p.y + up, up - p.y];
-        for (edge, bound) in self.edges.iter_mut().zip(bounds) {
-            *edge = edge.max(bound);
-        }
-        self.low = self.low.min(p);
-        self.high = self.high.max(p);
-    }
-
-    /// The nearest camera that sees all points. Without any it looks at the
-    /// origin, so that an empty file gives an empty picture.
-    pub(crate) fn frame(mut self) -> Frame {
-        if self.low.x > self.high.x {
-            self.add(DVec3::ZERO);
-        }
-        let [right, left, top, bottom] = self.edges;
-        let wanted =
-            ((right + left) / (2.0 * self.tan.0 * FILL)).max((top + bottom) / (2.0 * self.tan.1 * FILL));
-        let least = self.least_distance();
-        let depth = wanted.max(self.high.z + least);
-        let eye = DVec3::new((right - left) / 2.0, (top - bottom) / 2.0, depth);
-        Frame {
-            turn: self.turn,
-            eye,
-            tan: self.tan,
-            near: (depth - self.high.z) / 2.0,
-            distance: depth - (self.low.z + self.high.z) / 2.0,
-        }
-    }
-
-    /// Keeps the eye off points that fall together, and far enough from large
-    /// coordinates for the distance not to be lost in their rounding.
-    fn least_distance(&self) -> f64 {
-        let spread = (self.high - self.low).max_element();
-        let size = self.low.abs().max(self.high.abs()).max_element();
-        match spread.max(size * 1e-9) {
-            least if least > f64::MIN_POSITIVE => least,
-            _ => 1.0,
-        }
-    }
+/// How what is before a camera falls on the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Lens {
+    /// What is far is small.
+    Perspective {
+        /// Half the width and height of what is in view, at distance 1.
+        tan: (f64, f64),
+        near: f64,
+        /// Without it there is no far plane.
+        far: Option<f64>,
+    },
+    /// Everything keeps its size.
+    Orthographic {
+        /// Half the width and height of what is in view.
+        half: (f64, f64),
+        near: f64,
+        far: f64,
+    },
 }
 
 impl Frame {
     /// From the coordinates that `world` starts from to clip space, depth
-    /// reversed: 1 at the near plane, towards 0 far away. A floating-point
-    /// depth buffer so resolves every distance equally well.
+    /// reversed: 1 at the near plane, 0 at the far one. A floating-point depth
+    /// buffer so resolves every distance equally well.
     pub(crate) fn clip(&self, world: DMat4) -> DMat4 {
         let view = DMat4::from_translation(-self.eye) * DMat4::from_mat3(self.turn) * world;
-        let unit = 1.0 / self.distance;
-        let projection = DMat4::from_cols_array(&[
-            unit / self.tan.0,
-            0.0,
-            0.0,
-            0.0, //
-            0.0,
-            unit / self.tan.1,
-            0.0,
-            0.0, //
-            0.0,
-            0.0,
-            0.0,
-            -unit, //
-            0.0,
-            0.0,
-            self.near * unit,
-            0.0,
-        ]);
-        projection * view
+        self.lens.projection(1.0 / self.distance) * view
     }
 
     /// The world's +Y in the camera's axes.
     pub(crate) fn up(&self) -> Vec3 {
         self.turn.y_axis.as_vec3()
     }
+
+    /// How far before the camera a point of the world lies.
+    pub(crate) fn depth(&self, point: DVec3) -> f64 {
+        self.eye.z - (self.turn * point).z
+    }
+
+    /// From a point of the world to the camera, of length 1.
+    pub(crate) fn towards_eye(&self, point: DVec3) -> DVec3 {
+        let way = match self.lens {
+            Lens::Perspective { .. } => self.eye - self.turn * point,
+            Lens::Orthographic { .. } => DVec3::Z,
+        };
+        self.turn.transpose() * way.try_normalize().unwrap_or(DVec3::Z)
+    }
+
+    /// The width of a pixel at a point of the world, for a picture so many
+    /// pixels high; at the near plane for points before it.
+    pub(crate) fn pixel(&self, point: DVec3, height: u32) -> f64 {
+        let half_height = match self.lens {
+            Lens::Perspective { tan, near, .. } => tan.1 * self.depth(point).max(near),
+            Lens::Orthographic { half, .. } => half.1,
+        };
+        2.0 * half_height / f64::from(height.max(1))
+    }
+
+    /// Where a point of the world falls on a picture, pixels right and down
+    /// from its corner; `None` behind the camera.
+    pub(crate) fn on_picture(&self, point: DVec3, (width, height): (u32, u32)) -> Option<(f64, f64)> {
+        let clip = self.clip(DMat4::IDENTITY) * point.extend(1.0);
+        let (x, y) = (clip.x / clip.w, clip.y / clip.w);
+        let place = ((0.5 + 0.5 * x) * f64::from(width), (0.5 - 0.5 * y) * f64::from(height));
+        (clip.w > 0.0 && x.is_finite() && y.is_finite()).then_some(place)
+    }
+
+    /// The same view of the world turned about an upright axis through `centre`
+    /// by so many radians, the camera going the other way round.
+    pub(crate) fn turned(&self, centre: DVec3, angle: f64) -> Frame {
+        let about = DMat3::from_rotation_y(angle);
+        let shift = self.turn * (centre - about * centre);
+        Frame { turn: self.turn * about, eye: self.eye - shift, ..*self }
+    }
 }
 
-/// Only divisions and square roots, so that every machine gets the same.
-fn three_quarter_view() -> DMat3 {
-    let towards = TOWARDS_EYE.normalize();
-    let right = DVec3::Y.cross(towards).normalize();
-    DMat3::from_cols(right, towards.cross(right), towards).transpose()
+impl Lens {
+    fn projection(&self, unit: f64) -> DMat4 {
+        let (scale, depth) = match *self {
+            Lens::Perspective { tan, near, far } => {
+                let depth = match far {
+                    None => (0.0, near * unit),
+                    Some(far) => (near / (far - near) * unit, near * far / (far - near) * unit),
+                };
+                ((unit / tan.0, unit / tan.1), depth)
+            }
+            Lens::Orthographic { half, near, far } => {
+                ((1.0 / half.0, 1.0 / half.1), (1.0 / (far - near), far / (far - near)))
+            }
+        };
+        let (w, one) = match self {
+            Lens::Perspective { .. } => (-unit, 0.0),
+            Lens::Orthographic { .. } => (0.0, 1.0),
+        };
+        DMat4::from_cols(
+            DVec3::X.extend(0.0) * scale.0,
+            DVec3::Y.extend(0.0) * scale.1,
+            DVec3::new(0.0, 0.0, depth.0).extend(w),
+            DVec3::new(0.0, 0.0, depth.1).extend(one),
+        )
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Where a point falls: x and y from −1 to 1 across the picture, depth.
+    fn looking_along_minus_z(lens: Lens) -> Frame {
+        Frame { turn: DMat3::IDENTITY, eye: DVec3::new(1.0, 2.0, 3.0), lens, distance: 5.0 }
+    }
+
     fn project(frame: &Frame, point: DVec3) -> DVec3 {
         frame.clip(DMat4::IDENTITY).project_point3(point)
     }
 
-    fn framed(points: &[DVec3], size: (u32, u32)) -> Frame {
-        let mut framing = Framing::new(size);
-        points.iter().for_each(|p| framing.add(*p));
-        framing.frame()
-    }
-
-    fn cloud(scale: f64, offset: f64) -> Vec<DVec3> {
-        let coordinate = |i: usize, k: usize| ((i * k % 101) as f64 / 50.0 - 1.0) * scale;
-        (0..200)
-            .map(|i| DVec3::new(coordinate(i, 37), coordinate(i, 53), coordinate(i, 71)) + offset)
-            .collect()
-    }
-
     #[test]
-    fn all_points_fill_the_view_and_stay_inside() {
-        for size in [(512, 512), (640, 360), (90, 400), (1, 1)] {
-            for (scale, offset) in [(1.0, 0.0), (1e-12, 0.0), (1e12, 0.0), (1e9, 1e12), (3.0, -700.0)] {
-                let points = cloud(scale, offset);
-                let frame = framed(&points, size);
-                let seen: Vec<DVec3> = points.iter().map(|p| project(&frame, *p)).collect();
-                let most = seen.iter().map(|p| p.x.abs().max(p.y.abs())).fold(0.0, f64::max);
-                assert!((most - FILL).abs() < 1e-3, "{size:?} {scale} {offset}: {most}");
-                assert!(seen.iter().all(|p| p.z > 0.0 && p.z <= 1.0), "{size:?} {scale}");
-            }
+    fn lenses_map_their_planes_and_edges_to_the_ends_of_clip_space() {
+        let tan = (0.5, 0.25);
+        for (lens, edge, far) in [
+            (Lens::Perspective { tan, near: 2.0, far: Some(8.0) }, DVec3::new(1.0, 0.5, -2.0), 8.0),
+            (Lens::Perspective { tan, near: 2.0, far: None }, DVec3::new(1.0, 0.5, -2.0), 1e30),
+            (Lens::Orthographic { half: (3.0, 4.0), near: 2.0, far: 8.0 }, DVec3::new(3.0, 4.0, -2.0), 8.0),
+        ] {
+            let frame = looking_along_minus_z(lens);
+            let near = project(&frame, frame.eye + edge);
+            assert!((near - DVec3::ONE).length() < 1e-12, "{lens:?}: {near}");
+            let away = project(&frame, frame.eye + DVec3::new(0.0, 0.0, -far));
+            assert!(away.length() < 1e-12, "{lens:?}: {away}");
         }
     }
 
     #[test]
-    fn nothing_and_a_single_point_have_a_camera() {
-        for points in [vec![], vec![DVec3::ZERO], vec![DVec3::splat(1e12)], vec![DVec3::splat(1e-300)]] {
-            let frame = framed(&points, (512, 512));
-            let target = points.first().copied().unwrap_or_default();
-            let seen = project(&frame, target);
-            assert!(seen.is_finite() && seen.xy_length() < 1e-3, "{points:?}: {seen}");
-            assert!(seen.z > 0.0 && seen.z <= 1.0);
+    fn a_pixel_is_as_wide_as_two_points_that_fall_a_pixel_apart() {
+        let size = (400, 200);
+        for lens in [
+            Lens::Perspective { tan: (0.5, 0.25), near: 0.1, far: None },
+            Lens::Orthographic { half: (4.0, 2.0), near: 0.1, far: 99.0 },
+        ] {
+            let frame = looking_along_minus_z(lens);
+            let point = DVec3::new(0.3, 1.0, -7.0);
+            let beside = point + DVec3::X * frame.pixel(point, size.1);
+            let [a, b] = [point, beside].map(|p| frame.on_picture(p, size).unwrap());
+            assert!((b.0 - a.0 - 1.0).abs() < 1e-9 && (b.1 - a.1).abs() < 1e-9, "{lens:?}");
         }
     }
 
     #[test]
-    fn points_that_are_not_finite_do_not_count() {
-        let whole = framed(&cloud(1.0, 0.0), (512, 512));
-        let mut points = cloud(1.0, 0.0);
-        points.push(DVec3::new(f64::NAN, 0.0, 0.0));
-        points.push(DVec3::new(0.0, f64::INFINITY, 0.0));
-        assert_eq!(framed(&points, (512, 512)).eye, whole.eye);
-    }
-
-    #[test]
-    fn front_is_nearest_right_is_right_and_up_is_up() {
-        let frame = framed(&cloud(1.0, 0.0), (512, 512));
-        let at = |x, y, z| project(&frame, DVec3::new(x, y, z));
-        assert!(at(0.0, 0.0, 1.0).z > at(0.0, 0.0, -1.0).z);
-        assert!(at(1.0, 0.0, 0.0).x > at(-1.0, 0.0, 0.0).x);
-        assert!(at(0.0, 1.0, 0.0).y > at(0.0, -1.0, 0.0).y);
-        assert_eq!((frame.turn * DVec3::Y).x, 0.0);
-    }
-
-    trait XyLength {
-        fn xy_length(self) -> f64;
-    }
-    impl XyLength for DVec3 {
-        fn xy_length(self) -> f64 {
-            self.truncate().length()
-        }
+    fn a_turn_keeps_the_axis_in_place_and_a_whole_one_everything() {
+        let lens = Lens::Perspective { tan: (0.5, 0.5), near: 0.1, far: None };
+        let frame = looking_along_minus_z(lens);
+        let centre = DVec3::new(4.0, 0.0, -6.0);
+        let quarter = frame.turned(centre, std::f64::consts::FRAC_PI_2);
+        let (here, there) = (project(&frame, centre + DVec3::Y), project(&quarter, centre + DVec3::Y));
+        assert!((here - there).length() < 1e-12);
+        // What was in front of the axis is now on its right.
+        let front = project(&quarter, centre + DVec3::Z);
+        assert!((front - project(&frame, centre + DVec3::X)).length() < 1e-12);
+        let whole = frame.turned(centre, std::f64::consts::TAU);
+        assert!((project(&whole, DVec3::ZERO) - project(&frame, DVec3::ZERO)).length() < 1e-9);
     }
 }

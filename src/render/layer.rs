@@ -1,24 +1,9 @@
 //! What a renderer leaves behind, and what is behind that.
 
+use super::background::Background;
 use super::colour::{LINEAR, encode};
 use image::RgbaImage;
 use rayon::prelude::*;
-
-/// What lies behind the parts.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[non_exhaustive]
-pub enum Background {
-    /// A light grey that darkens towards the floor.
-    #[default]
-    Studio,
-    /// One sRGB colour.
-    Plain([u8; 3]),
-    /// Nothing: the picture keeps its alpha channel.
-    Transparent,
-}
-
-/// Grey levels of the studio, at the top and at the bottom.
-const STUDIO: [f32; 2] = [244.0, 206.0];
 
 /// The parts alone, over nothing: colours premultiplied in linear light, then
 /// as sRGB; alpha linear. A graphics card's sRGB target holds just that.
@@ -34,24 +19,12 @@ pub(crate) fn covered(layer: &Layer) -> f64 {
 pub(crate) fn compose(mut layer: Layer, background: Background) -> RgbaImage {
     let (width, height) = layer.dimensions();
     let row_length = (width as usize * 4).max(1);
-    let row = |(y, pixels): (usize, &mut [u8])| match backdrop(background, y, height) {
+    let row = |(y, pixels): (usize, &mut [u8])| match background.row(y, height) {
         Some(behind) => pixels.as_chunks_mut().0.iter_mut().for_each(|p| over(p, behind)),
         None => pixels.as_chunks_mut().0.iter_mut().for_each(divide_by_alpha),
     };
     layer.par_chunks_mut(row_length).enumerate().for_each(row);
     layer
-}
-
-fn backdrop(background: Background, y: usize, height: u32) -> Option<[u8; 3]> {
-    match background {
-        Background::Transparent => None,
-        Background::Plain(colour) => Some(colour),
-        Background::Studio => {
-            let down = (y as f32 + 0.5) / height as f32;
-            let level = STUDIO[0] + (STUDIO[1] - STUDIO[0]) * down * down;
-            Some([(level + 0.5) as u8; 3])
-        }
-    }
 }
 
 fn over(pixel: &mut [u8; 4], behind: [u8; 3]) {
@@ -67,6 +40,35 @@ fn over(pixel: &mut [u8; 4], behind: [u8; 3]) {
         }
     }
     pixel[3] = 255;
+}
+
+/// Lets only a share of a layer's light and cover remain, 0 to 1.
+pub(crate) fn fade(layer: &mut Layer, share: f32) {
+    // Both scale alike, so tables of 256 entries say it all.
+    let light: Vec<u8> = LINEAR.iter().map(|light| encode(light * share)).collect();
+    let alpha: Vec<u8> = (0..=255_u8).map(|alpha| (f32::from(alpha) * share + 0.5) as u8).collect();
+    layer.as_mut().par_chunks_mut(4 << 10).for_each(|pixels| {
+        for pixel in pixels.as_chunks_mut::<4>().0 {
+            let [r, g, b, a] = *pixel;
+            *pixel = [light[r as usize], light[g as usize], light[b as usize], alpha[a as usize]];
+        }
+    });
+}
+
+/// Lays a layer of the same size over another.
+pub(crate) fn lay_over(under: &mut Layer, over: &Layer) {
+    let pairs = under.as_chunks_mut::<4>().0.par_iter_mut().zip(over.as_chunks::<4>().0);
+    pairs.with_min_len(1 << 10).for_each(|(under, over)| match over[3] {
+        0 => {}
+        255 => *under = *over,
+        alpha => {
+            let through = 1.0 - f32::from(alpha) / 255.0;
+            for (under, over) in under[..3].iter_mut().zip(over) {
+                *under = encode(LINEAR[*over as usize] + LINEAR[*under as usize] * through);
+            }
+            under[3] = (f32::from(alpha) + f32::from(under[3]) * through + 0.5) as u8;
+        }
+    });
 }
 
 /// PNG wants colours that are not multiplied by alpha.
@@ -104,6 +106,19 @@ mod tests {
         assert_eq!(one([half, half, half, 128], Background::Plain([0; 3])), [half, half, half, 255]);
         let whole = one([half, half, half, 128], Background::Transparent);
         assert!(whole[..3].iter().all(|c| *c >= 254) && whole[3] == 128, "{whole:?}");
+    }
+
+    #[test]
+    fn a_layer_faded_by_half_lets_half_of_another_through() {
+        let mut under = Layer::from_pixel(2, 1, Rgba([255, 0, 0, 255]));
+        let mut over = Layer::from_pixel(2, 1, Rgba([0, 0, 255, 255]));
+        over.put_pixel(1, 0, Rgba([0; 4]));
+        fade(&mut over, 0.5);
+        assert_eq!(over[(0, 0)].0, [0, 0, encode(0.5), 128]);
+        lay_over(&mut under, &over);
+        let [r, g, b, a] = under[(0, 0)].0;
+        assert!(r.abs_diff(encode(0.5)) <= 1 && g == 0 && b == encode(0.5) && a == 255, "{r} {g} {b} {a}");
+        assert_eq!(under[(1, 0)].0, [255, 0, 0, 255]);
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! A part that cannot be read is left out and named in the notes; only what
 //! leaves nothing to draw from is an error, and that is found on opening.
 
+use super::camera::Camera;
 use super::mesh::{self, Left};
 use super::pose::Local;
 use super::scene::{Part, Texture};
@@ -22,6 +23,8 @@ pub(crate) struct Model {
     pub textures: Vec<Texture>,
     /// The nodes of the scene, parents before their children.
     pub nodes: Vec<Node>,
+    /// The cameras among the nodes.
+    pub cameras: Vec<Camera>,
     /// Joints of skins, as indices into the file's nodes.
     pub joints: HashSet<usize>,
     /// What of the file is not drawn, a sentence each.
@@ -45,6 +48,7 @@ impl Model {
     /// Reads what the default scene shows.
     pub(crate) fn load(asset: &mut Asset) -> Self {
         let mut model = Model { nodes: tree(asset.root()), joints: joints(asset.root()), ..Model::default() };
+        model.cameras = Camera::all(asset.root(), &model.nodes);
         let mut reader = Reader {
             asset,
             textures: Textures::default(),

@@ -4,6 +4,7 @@
 use super::error::Error;
 use super::layer::covered;
 use super::session::{Session, close_up};
+use super::view::Style;
 use crate::asset::play::{Channel, Keys, Property};
 use crate::asset::{self, Asset};
 
@@ -71,12 +72,12 @@ impl Session {
         let clip = self.clip(None)?;
         let pose = self.pose(asset, clip, self.duration(clip) * 0.5)?;
         let frame = close_up(pose.corners(&self.model), size)?;
-        let share = covered(&self.draw(&pose, &frame, size)?);
+        let share = covered(&self.draw(&pose, &frame, size, &[])?);
         let Some(corners) = pose.largest(&self.model).filter(|_| share < LEAST_VISIBLE) else {
             return Ok(share);
         };
         let closer = close_up(corners, size)?;
-        Ok(share.max(covered(&self.draw(&pose, &closer, size)?)))
+        Ok(share.max(covered(&self.draw(&pose, &closer, size, &[])?)))
     }
 
     fn moves(
@@ -87,10 +88,16 @@ impl Session {
         most: &mut f64,
     ) -> Result<bool, Error> {
         let duration = self.duration(Some(clip));
-        let first = self.layer(asset, Some(clip), 0.0, size)?;
+        let style = Style { size, ..Style::default() };
+        let view = self.view(asset, &[Some(clip)], &style, false)?;
+        let mut layer = |t: f64| {
+            let pose = self.pose(asset, Some(clip), t)?;
+            self.draw(&pose, &view.frame(&pose, 0.0), size, &[])
+        };
+        let first = layer(0.0)?;
         *most = most.max(covered(&first));
         for moment in &MOMENTS[1..] {
-            let layer = self.layer(asset, Some(clip), duration * moment, size)?;
+            let layer = layer(duration * moment)?;
             *most = most.max(covered(&layer));
             if layer != first {
                 return Ok(true);

@@ -4,6 +4,7 @@ use super::scene::{Part, Vertex};
 use super::texture::Textures;
 use crate::asset::{Asset, Error};
 use glam::{DMat4, DVec3, Vec3};
+use gltf::json;
 use gltf::json::mesh::{Mode, Semantic};
 use gltf::json::validation::Checked;
 use std::collections::BTreeSet;
@@ -15,6 +16,17 @@ pub(crate) enum Left {
     Skins,
     MorphTargets,
     Points,
+    Emission,
+    NormalMaps,
+}
+
+impl Left {
+    /// What of a material is not drawn.
+    fn of(material: &json::Material) -> impl Iterator<Item = Left> {
+        let glows = material.emissive_factor.0.iter().any(|light| *light > 0.0);
+        let kinds = [(glows, Left::Emission), (material.normal_texture.is_some(), Left::NormalMaps)];
+        kinds.into_iter().filter_map(|(is, kind)| is.then_some(kind))
+    }
 }
 
 impl fmt::Display for Left {
@@ -23,6 +35,8 @@ impl fmt::Display for Left {
             Left::Skins => "skins (meshes rest)",
             Left::MorphTargets => "morph targets",
             Left::Points => "points",
+            Left::Emission => "emission",
+            Left::NormalMaps => "normal maps",
         })
     }
 }
@@ -59,6 +73,8 @@ pub(crate) fn part(
             return Ok(None);
         }
     };
+    let materials = &asset.root().materials;
+    left.extend(material.and_then(|m| materials.get(m.value())).into_iter().flat_map(Left::of));
     let (mut material, uv_set) = textures.material(asset, material.map(|m| m.value()));
     let uv = uvs.get(uv_set).copied().flatten().filter(|_| material.texture.is_some());
     let mut raw = Raw { vertices: positions.iter().map(|p| plain(*p)).collect(), triangles };

@@ -1,40 +1,61 @@
-//! Draws a glTF file at a time of one of its clips.
+//! Draws a glTF file: at a time of one of its clips, or its motion.
 //!
 //! [`thumbnail`] makes one picture; a [`Session`] reads the file once and
-//! makes many, and [`side_by_side`] shows two files. What is drawn is glTF 2.0's core: triangles in a tree of nodes
-//! that translations, rotations and scales move, with base colours, textures
-//! and vertex colours. Skins and morph targets rest, and a note says so.
+//! makes many: moments, contact sheets, ghosts, clips side by side, and the
+//! frames of a [`Film`], which [`encode`] writes as GIF, APNG or WebP.
+//! [`side_by_side`] shows two files. What is drawn is glTF 2.0's core: triangles
+//! and lines in a tree of nodes that translations, rotations and scales move,
+//! with base colours, textures and vertex colours. Skins and morph targets rest,
+//! and a note says so.
 //!
 //! The flow is `load` (file to parts and nodes), `pose` (nodes at a time),
-//! `frame` (where the camera stands), `scene` (what a renderer needs), then
-//! `gpu` or `cpu`, which draw alike, and `layer` (onto a background).
+//! `view` (where the camera stands), `scene` (what a renderer needs), then
+//! `gpu` or `cpu`, which draw alike, `layer` (onto a background), and `cell`
+//! (with lines and words, into a grid).
 
+mod background;
+mod camera;
+mod cell;
 mod colour;
 mod cpu;
+pub mod encode;
 mod error;
+mod film;
+mod floor;
 mod frame;
+mod framing;
+mod ghost;
 mod gpu;
+mod grid;
+mod label;
 mod layer;
 mod load;
 mod look;
 mod mesh;
+mod overlap;
 mod pair;
 mod pose;
 mod scene;
 mod session;
 mod shade;
+mod still;
+mod stroke;
 #[cfg(test)]
 mod tests;
 mod texture;
 mod time;
 mod triangle;
+mod view;
 
+pub use background::Background;
 pub use error::Error;
-pub use layer::Background;
+pub use film::{Film, MOST_FRAMES};
 pub use look::{ClipLook, LEAST_VISIBLE, Look};
 pub use pair::{Moment, side_by_side};
 pub use session::Session;
+pub use still::Which;
 pub use time::Time;
+pub use view::Style;
 
 use crate::asset::Asset;
 use image::RgbaImage;
@@ -59,27 +80,19 @@ pub enum Renderer {
 /// What picture to make; the default is half way through the first clip.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// Pixels across and down, each 1 to [`MOST_PIXELS`].
-    pub size: (u32, u32),
     /// Times beyond the clip are clamped, with a note.
     pub time: Time,
     /// The clip's name; the first clip without one.
     pub clip: Option<String>,
     /// What to draw with.
     pub renderer: Renderer,
-    /// What lies behind.
-    pub background: Background,
+    /// How it looks.
+    pub style: Style,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Options {
-            size: (512, 512),
-            time: Time::Fraction(0.5),
-            clip: None,
-            renderer: Renderer::Auto,
-            background: Background::Studio,
-        }
+        Options { time: Time::Fraction(0.5), clip: None, renderer: Renderer::Auto, style: Style::default() }
     }
 }
 
@@ -112,7 +125,7 @@ impl Picture {
 pub fn thumbnail(asset: &mut Asset, options: &Options) -> Result<Picture, Error> {
     let mut session = Session::new(asset, options.renderer)?;
     let clip = session.clip(options.clip.as_deref())?;
-    session.picture(asset, clip, options.time, options.size, options.background)
+    session.picture(asset, clip, options.time, &options.style)
 }
 
 /// Looks whether a file shows anything, and whether its clips move it.

@@ -1,15 +1,11 @@
 //! Two files at a moment each, side by side.
 
 use super::error::Error;
+use super::grid::Grid;
 use super::layer::{compose, covered};
 use super::session::close_up;
 use super::{Background, Picture, Renderer, Session};
 use crate::asset::Asset;
-use image::{Rgba, RgbaImage, imageops};
-
-/// Pixels between the two halves, and their colour.
-const GAP: u32 = 2;
-const GAP_COLOUR: Rgba<u8> = Rgba([96, 96, 96, 255]);
 
 /// A time of a clip.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,11 +30,12 @@ pub fn side_by_side(
     let right = sessions.1.pose(right, of_right.clip, of_right.time)?;
     let corners = left.corners(&sessions.0.model).chain(right.corners(&sessions.1.model));
     let frame = close_up(corners, size)?;
-    let layers = (sessions.0.draw(&left, &frame, size)?, sessions.1.draw(&right, &frame, size)?);
+    let layers = (sessions.0.draw(&left, &frame, size, &[])?, sessions.1.draw(&right, &frame, size, &[])?);
     let covered = (covered(&layers.0) + covered(&layers.1)) / 2.0;
-    let mut pixels = RgbaImage::from_pixel(2 * size.0 + GAP, size.1, GAP_COLOUR);
-    imageops::replace(&mut pixels, &compose(layers.0, background), 0, 0);
-    imageops::replace(&mut pixels, &compose(layers.1, background), i64::from(size.0 + GAP), 0);
+    let grid = Grid::new(2, 1, size)?;
+    let mut pixels = grid.blank();
+    grid.put(&mut pixels, 0, &compose(layers.0, background));
+    grid.put(&mut pixels, 1, &compose(layers.1, background));
     let note = |side: &'static str| move |note: &String| format!("{side}: {note}");
     let left = sessions.0.notes().iter().map(note("left"));
     let notes = left.chain(sessions.1.notes().iter().map(note("right"))).collect();

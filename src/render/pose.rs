@@ -107,6 +107,16 @@ impl Pose {
         Pose(world)
     }
 
+    /// Where a node stands, by its place in the model.
+    pub(crate) fn node(&self, place: usize) -> DMat4 {
+        self.0.get(place).copied().unwrap_or_default()
+    }
+
+    /// No node stands anywhere.
+    pub(crate) fn nothing() -> Self {
+        Pose(Vec::new())
+    }
+
     /// Each part that is shown, and the way from its mesh to the world.
     pub(crate) fn placed<'a>(&'a self, model: &'a Model) -> impl Iterator<Item = (usize, DMat4)> + 'a {
         let nodes = model.nodes.iter().zip(&self.0);
@@ -127,7 +137,8 @@ impl Pose {
             .max_by(|a, b| size(a).total_cmp(&size(b)))
     }
 
-    fn boxes<'a>(&'a self, model: &'a Model) -> impl Iterator<Item = [DVec3; 8]> + 'a {
+    /// The corners of the box around each part that has anything to draw.
+    pub(crate) fn boxes<'a>(&'a self, model: &'a Model) -> impl Iterator<Item = [DVec3; 8]> + 'a {
         let drawn = |part: &usize| !model.parts[*part].indices.is_empty();
         self.placed(model).filter(move |(part, _)| drawn(part)).map(|(part, world)| {
             let corners = model.parts[part].corners();

@@ -102,12 +102,16 @@ pub(crate) struct Draw {
     pub normal: [[f32; 3]; 3],
     /// Front faces run clockwise, as in a mirror.
     pub mirrored: bool,
+    /// How far before the camera the part's middle lies.
+    pub depth: f64,
 }
 
 /// All that a renderer needs for one picture.
 #[derive(Debug)]
 pub(crate) struct Scene<'a> {
     pub parts: &'a [Part],
+    /// Parts of this picture alone, such as lines; counted on from `parts`.
+    pub extras: &'a [Part],
     pub textures: &'a [Texture],
     /// In the order of drawing: what lets light through last, farthest first.
     pub draws: Vec<Draw>,
@@ -154,22 +158,45 @@ impl<'a> Scene<'a> {
             .into_iter()
             .filter_map(|(part, world)| Draw::new(part, world * parts[part].placement, frame))
             .collect();
-        let mut scene = Scene { parts, textures, draws, light: Light::studio(frame.up()), size };
+        let light = Light::studio(frame.up());
+        let mut scene = Scene { parts, extras: &[], textures, draws, light, size };
         scene.sort();
         scene
     }
 
+    /// The scene with more parts, which stand in the world as they are.
+    pub(crate) fn with(mut self, extras: &'a [Part], frame: &Frame) -> Self {
+        let first = self.parts.len();
+        let placed = extras.iter().enumerate();
+        self.draws.extend(placed.filter_map(|(i, part)| Draw::new(first + i, part.placement, frame)));
+        self.extras = extras;
+        self.sort();
+        self
+    }
+
+    /// A part by the number that draws have of it.
+    pub(crate) fn part(&self, index: usize) -> &'a Part {
+        match index.checked_sub(self.parts.len()) {
+            Some(extra) => &self.extras[extra],
+            None => &self.parts[index],
+        }
+    }
+
     /// The material of a draw.
-    pub(crate) fn material(&self, draw: &Draw) -> &Material {
-        &self.parts[draw.part].material
+    pub(crate) fn material(&self, draw: &Draw) -> &'a Material {
+        &self.part(draw.part).material
     }
 
     /// Opaque parts keep the file's order; glassy ones follow, far to near by
     /// the distance of their middles, which is right unless they interlock.
     fn sort(&mut self) {
-        let parts = self.parts;
-        self.draws.sort_by(|a, b| match (parts[a.part].blends(), parts[b.part].blends()) {
-            (true, true) => b.clip[3][3].total_cmp(&a.clip[3][3]),
+        let (parts, extras) = (self.parts, self.extras);
+        let blends = |draw: &Draw| match draw.part.checked_sub(parts.len()) {
+            Some(extra) => extras[extra].blends(),
+            None => parts[draw.part].blends(),
+        };
+        self.draws.sort_by(|a, b| match (blends(a), blends(b)) {
+            (true, true) => b.depth.total_cmp(&a.depth),
             (a, b) => a.cmp(&b),
         });
     }
@@ -199,6 +226,7 @@ impl Draw {
             clip: clip.to_cols_array_2d().map(|c| c.map(|v| v as f32)),
             normal: normals(turned)?,
             mirrored: turned.determinant() < 0.0,
+            depth: frame.depth(world.w_axis.truncate()),
         };
         let finite = draw.clip.iter().flatten().all(|v| v.is_finite());
         finite.then_some(draw)

@@ -1,13 +1,16 @@
 //! A file made ready once, and any number of pictures of it.
 
 use super::error::Error;
-use super::frame::{Frame, Framing};
+use super::frame::Frame;
+use super::framing::Framing;
 use super::gpu::Gpu;
-use super::layer::{Background, Layer, compose, covered};
+use super::layer::Layer;
 use super::load::Model;
 use super::pose::Pose;
-use super::scene::Scene;
-use super::{MOST_PIXELS, Picture, Renderer, Time, cpu};
+use super::scene::{Part, Scene};
+use super::still::Which;
+use super::view::{Style, View};
+use super::{MOST_PIXELS, Renderer, camera::Camera, cpu};
 use crate::asset::Asset;
 use crate::asset::play::{Clip, Player};
 use glam::DVec3;
@@ -32,8 +35,8 @@ pub struct Session {
     /// Whether the renderer may be given up for the built-in one.
     may_fall_back: bool,
     notes: Vec<String>,
-    /// The view found last, and for which clip and size.
-    framed: Option<(Option<usize>, (u32, u32), Frame)>,
+    /// The view found last, and for which clips, with or without a turntable.
+    found: Option<(Vec<Which>, bool, View)>,
 }
 
 /// What pictures are drawn with.
@@ -63,7 +66,7 @@ impl Session {
             canvas,
             may_fall_back: renderer == Renderer::Auto,
             notes,
-            framed: None,
+            found: None,
         })
     }
 
@@ -100,43 +103,34 @@ impl Session {
         &self.notes
     }
 
-    /// Draws a moment of a clip, an index into [`Session::clips`], or of the
-    /// file at rest. The view is the same for all times of a clip.
-    pub fn picture(
-        &mut self,
-        asset: &mut Asset,
-        clip: Option<usize>,
-        time: Time,
-        size: (u32, u32),
-        background: Background,
-    ) -> Result<Picture, Error> {
-        let (t, clamped) = time.within(self.duration(clip));
-        let layer = self.layer(asset, clip, t, size)?;
-        Ok(Picture {
-            covered: covered(&layer),
-            pixels: compose(layer, background),
-            renderer: self.renderer().to_owned(),
-            notes: self.notes.iter().cloned().chain(clamped).collect(),
-        })
+    /// Width by height of the pictures that a camera of the file is meant for,
+    /// where the file says so.
+    pub fn aspect(&self, camera: &str) -> Result<Option<f64>, Error> {
+        Ok(self.camera(camera)?.aspect())
     }
 
-    /// The parts alone at `t` seconds, seen so that the whole clip is in view.
-    pub(super) fn layer(
+    /// The camera that a node's name or its own belongs to.
+    fn camera(&self, name: &str) -> Result<&Camera, Error> {
+        let called = |which: usize| {
+            let is = |camera: &&Camera| camera.names[which].as_deref() == Some(name);
+            self.model.cameras.iter().find(is)
+        };
+        let names = self.model.cameras.iter().filter_map(|camera| camera.names.iter().flatten().next());
+        let unknown = || Error::NoCamera { name: name.to_owned(), cameras: names.cloned().collect() };
+        called(0).or_else(|| called(1)).ok_or_else(unknown)
+    }
+
+    /// Draws a pose as a camera sees it, with what else stands in the world.
+    pub(super) fn draw(
         &mut self,
-        asset: &mut Asset,
-        clip: Option<usize>,
-        t: f64,
+        pose: &Pose,
+        frame: &Frame,
         size: (u32, u32),
+        extras: &[Part],
     ) -> Result<Layer, Error> {
-        let frame = self.frame(asset, clip, size)?;
-        let pose = self.pose(asset, clip, t)?;
-        self.draw(&pose, &frame, size)
-    }
-
-    /// Draws a pose as a camera sees it.
-    pub(super) fn draw(&mut self, pose: &Pose, frame: &Frame, size: (u32, u32)) -> Result<Layer, Error> {
         let placed = pose.placed(&self.model);
         let scene = Scene::new(&self.model.parts, &self.model.textures, placed, frame, size);
+        let scene = scene.with(extras, frame);
         let Canvas::Gpu(gpu) = &mut self.canvas else {
             return Ok(cpu::draw(&scene));
         };
@@ -159,23 +153,40 @@ impl Session {
         }
     }
 
-    /// The view that holds all of a clip's motion.
-    fn frame(&mut self, asset: &mut Asset, clip: Option<usize>, size: (u32, u32)) -> Result<Frame, Error> {
-        check(size)?;
-        if let Some((of, at, frame)) = self.framed
-            && (of, at) == (clip, size)
+    /// The view that holds all of some clips' motion, or the camera asked for.
+    pub(super) fn view(
+        &mut self,
+        asset: &mut Asset,
+        clips: &[Which],
+        style: &Style,
+        turntable: bool,
+    ) -> Result<View, Error> {
+        check(style.size)?;
+        if let Some((of, turns, view)) = &self.found
+            && (of.as_slice(), *turns, &view.style) == (clips, turntable, style)
         {
-            return Ok(frame);
+            return Ok(view.clone());
         }
-        let duration = self.duration(clip);
-        let mut framing = Framing::new(size);
-        for t in moments(duration) {
-            let pose = self.pose(asset, clip, t)?;
-            pose.corners(&self.model).for_each(|corner| framing.add(corner));
+        let camera = style.camera.as_deref().map(|name| self.camera(name).cloned()).transpose()?;
+        let view = View::new(style, camera, turntable, |take| self.sweep(asset, clips, take))?;
+        self.found = Some((clips.to_vec(), turntable, view.clone()));
+        Ok(view)
+    }
+
+    /// Hands out the corners of all boxes at many moments of some clips.
+    fn sweep(
+        &mut self,
+        asset: &mut Asset,
+        clips: &[Which],
+        take: &mut dyn FnMut(DVec3),
+    ) -> Result<(), Error> {
+        for &clip in clips {
+            for t in moments(self.duration(clip)) {
+                let pose = self.pose(asset, clip, t)?;
+                pose.corners(&self.model).for_each(&mut *take);
+            }
         }
-        let frame = framing.frame();
-        self.framed = Some((clip, size, frame));
-        Ok(frame)
+        Ok(())
     }
 
     /// How long a clip is, seconds; 0 without a clip.

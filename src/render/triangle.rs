@@ -51,7 +51,7 @@ struct Corner {
 impl<'a> Placed<'a> {
     pub(crate) fn new(scene: &'a Scene<'a>, index: usize) -> Self {
         let draw = &scene.draws[index];
-        let part = &scene.parts[draw.part];
+        let part = scene.part(draw.part);
         let texture: Option<&Texture> = part.material.texture.map(|t| &scene.textures[t]);
         let surface = Surface { material: &part.material, texture, light: &scene.light };
         Placed { index: index as u32, draw, part, surface, size: scene.size }

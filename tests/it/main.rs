@@ -27,6 +27,8 @@ mod help;
 mod inspect;
 #[cfg(feature = "cli")]
 mod interpolation;
+#[cfg(all(feature = "cli", feature = "render"))]
+mod moving;
 #[cfg(feature = "cli")]
 mod outdated;
 #[cfg(feature = "cli")]

@@ -1,7 +1,8 @@
 //! `dat2glb plot`.
 
+use super::pixels::size;
 use super::{
-    Along, OrderFlag, Schemes, Tangents, each_once, ends, frame, named, positive, schemes, size, tolerance,
+    Along, OrderFlag, Schemes, Tangents, each_once, ends, frame, named, positive, schemes, tolerance,
 };
 use clap::{Args, ValueHint};
 use dat2glb::curve::{Ends, Scheme};

@@ -8,7 +8,7 @@ use super::error::Error;
 use super::layer::Layer;
 use super::scene::{Light, Part, Scene, Texture};
 use pipeline::{Kind, Pipelines};
-use stock::Stock;
+use stock::{Stock, StockedPart};
 use target::Target;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
@@ -23,6 +23,8 @@ pub(crate) struct Gpu {
     queue: wgpu::Queue,
     pipelines: Pipelines,
     stock: Stock,
+    /// What the last picture was drawn to, for the next of its size.
+    target: Option<Target>,
     /// The adapter, in words.
     pub(crate) name: String,
 }
@@ -42,7 +44,8 @@ impl Gpu {
             let stock = Stock::new(&device, &queue, &pipelines, parts, textures);
             Ok((pipelines, stock))
         })?;
-        Ok(Gpu { device, queue, pipelines, stock, name: format!("wgpu: {} ({})", info.name, info.backend) })
+        let name = format!("wgpu: {} ({})", info.name, info.backend);
+        Ok(Gpu { device, queue, pipelines, stock, target: None, name })
     }
 
     /// Draws a scene made of the parts that the adapter was made ready for.
@@ -55,18 +58,23 @@ impl Gpu {
         let (width, height) = scene.size;
         let batches = self.batches(scene);
         let placements = self.placements(scene);
-        let target = Target::new(&self.device, (width.min(PASS), height.min(PASS)));
+        let extras: Vec<_> = scene.extras.iter().map(|part| StockedPart::new(&self.device, part)).collect();
+        let pass = (width.min(PASS), height.min(PASS));
+        let kept = self.target.take().filter(|target| target.size == pass);
+        let target = kept.unwrap_or_else(|| Target::new(&self.device, pass));
         let mut layer = Layer::new(width, height);
         for top in (0..height).step_by(PASS as usize) {
             for left in (0..width).step_by(PASS as usize) {
                 let light = self.light(&scene.light, crop(scene.size, target.size, (left, top)));
                 let mut encoder = self.device.create_command_encoder(&Default::default());
-                self.encode(&mut encoder, &target, &batches, &placements, &light);
+                self.encode(&mut encoder, &target, (&batches, &extras), &placements, &light);
                 target.copy_out(&mut encoder);
                 self.queue.submit([encoder.finish()]);
                 target.read(&self.device, &mut layer, (left, top))?;
             }
         }
+        // Not kept where reading failed: it may still be mapped.
+        self.target = Some(target);
         Ok(layer)
     }
 
@@ -74,14 +82,15 @@ impl Gpu {
         &self,
         encoder: &mut wgpu::CommandEncoder,
         target: &Target,
-        batches: &[Batch],
+        (batches, extras): (&[Batch], &[Option<StockedPart>]),
         placements: &wgpu::Buffer,
         light: &wgpu::BindGroup,
     ) {
         let mut pass = target.begin(encoder);
         pass.set_bind_group(0, light, &[]);
         for batch in batches {
-            let Some(part) = &self.stock.parts[batch.part] else {
+            let mut stock = self.stock.parts.iter().chain(extras);
+            let Some(part) = stock.nth(batch.part).and_then(Option::as_ref) else {
                 continue;
             };
             let [first, end] = batch.draws.map(|d| (d * stock::PLACEMENT_BYTES) as u64);

@@ -45,7 +45,7 @@ impl Stock {
 }
 
 impl StockedPart {
-    fn new(device: &wgpu::Device, part: &Part) -> Option<Self> {
+    pub(super) fn new(device: &wgpu::Device, part: &Part) -> Option<Self> {
         if part.indices.is_empty() {
             return None;
         }

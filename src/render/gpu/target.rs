@@ -10,6 +10,7 @@ use wgpu::{TextureFormat, TextureUsages};
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// The textures of a pass, used again for the next.
+#[derive(Debug)]
 pub(super) struct Target {
     pub size: (u32, u32),
     samples: wgpu::TextureView,

@@ -1,8 +1,9 @@
 use super::*;
+use crate::render::Background;
 use crate::render::cpu;
 use crate::render::error::Error;
 use crate::render::gpu::Gpu;
-use crate::render::layer::{Background, compose};
+use crate::render::layer::compose;
 use image::RgbaImage;
 
 /// Set where an adapter must be found, as CI does.

@@ -6,8 +6,8 @@ use serde_json::{Value, json};
 const SIZE: (u32, u32) = (96, 96);
 
 /// A file that grows by accessors.
-struct File {
-    json: Value,
+pub(super) struct File {
+    pub json: Value,
     bin: Vec<u8>,
 }
 
@@ -20,7 +20,7 @@ impl File {
         File { json, bin: Vec::new() }
     }
 
-    fn push(&mut self, list: &str, item: Value) -> usize {
+    pub(super) fn push(&mut self, list: &str, item: Value) -> usize {
         if self.json.get(list).is_none() {
             self.json[list] = json!([]);
         }
@@ -46,17 +46,17 @@ impl File {
         self.accessor(kind, 5126, &bytes(numbers), numbers.len() / width.max(1))
     }
 
-    fn asset(&self) -> Asset {
+    pub(super) fn asset(&self) -> Asset {
         let mut json = self.json.clone();
         json["buffers"][0]["byteLength"] = json!(self.bin.len());
         open(glb(&json, &self.bin)).unwrap()
     }
 
-    fn picture(&self) -> Picture {
+    pub(super) fn picture(&self) -> Picture {
         thumbnail(&mut self.asset(), &options()).unwrap()
     }
 
-    fn animate(&mut self, name: &str, node: usize, path: &str, keys: &[f32]) {
+    pub(super) fn animate(&mut self, name: &str, node: usize, path: &str, keys: &[f32]) {
         let kind = if path == "rotation" { "VEC4" } else { "VEC3" };
         let count = keys.len() / if path == "rotation" { 4 } else { 3 };
         let times: Vec<f32> = (0..count).map(|i| i as f32).collect();
@@ -72,8 +72,12 @@ impl File {
     }
 }
 
-fn options() -> Options {
-    Options { size: SIZE, renderer: Renderer::Cpu, ..Options::default() }
+pub(super) fn options() -> Options {
+    Options { style: style(SIZE), renderer: Renderer::Cpu, ..Options::default() }
+}
+
+pub(super) fn style(size: (u32, u32)) -> Style {
+    Style { size, ..Style::default() }
 }
 
 /// A house-shaped outline as a fan, seen from the front.
@@ -98,7 +102,7 @@ fn house(mode: u32, vertices: &[usize], indices: Option<&[u8]>) -> File {
     file
 }
 
-fn plain_house() -> File {
+pub(super) fn plain_house() -> File {
     house(4, &AS_TRIANGLES, None)
 }
 
@@ -161,7 +165,8 @@ fn a_matrix_and_its_steps_place_alike() {
 /// The colour most of the drawn pixels have, over black.
 fn main_colour(file: &File) -> [u8; 3] {
     let background = Background::Plain([0; 3]);
-    let picture = thumbnail(&mut file.asset(), &Options { background, ..options() }).unwrap();
+    let style = Style { background, ..style(SIZE) };
+    let picture = thumbnail(&mut file.asset(), &Options { style, ..options() }).unwrap();
     let mut counts = std::collections::HashMap::new();
     for pixel in picture.pixels.pixels().filter(|p| p.0[..3] != [0; 3]) {
         *counts.entry([pixel[0], pixel[1], pixel[2]]).or_insert(0) += 1;
@@ -224,6 +229,37 @@ fn what_is_not_drawn_is_said_in_one_line() {
     file.json["extensionsUsed"] = json!(["KHR_materials_clearcoat", "KHR_mesh_quantization"]);
     let expected = "not drawn: morph targets, points, KHR_materials_clearcoat";
     assert_eq!(file.picture().notes, [expected]);
+
+    let mut file = plain_house();
+    let transmission = json!({"KHR_materials_transmission": {"transmissionFactor": 1}});
+    let transform = json!({"KHR_texture_transform": {"scale": [2, 2]}});
+    file.push("materials", json!({
+        "extensions": transmission, "emissiveFactor": [1, 0, 0], "normalTexture": {"index": 0, "extensions": transform},
+    }));
+    file.json["meshes"][0]["primitives"][0]["material"] = json!(0);
+    file.json["skins"] = json!([{"joints": [0]}]);
+    file.json["nodes"][0]["skin"] = json!(0);
+    file.json["extensionsUsed"] = json!(["KHR_materials_transmission", "KHR_texture_transform"]);
+    let picture = file.picture();
+    let core = "not drawn: skins (meshes rest), emission, normal maps";
+    assert_eq!(picture.notes, [format!("{core}, KHR_materials_transmission, KHR_texture_transform")]);
+    assert!(picture.covered > 0.2);
+}
+
+#[test]
+fn compressed_meshes_are_left_out_and_named() {
+    let mut file = plain_house();
+    let positions = file.push("accessors", json!({"componentType": 5126, "type": "VEC3", "count": 9}));
+    let draco = json!({"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {"POSITION": 0}}});
+    let mesh = json!({"primitives": [{"attributes": {"POSITION": positions}, "extensions": draco}]});
+    let mesh = file.push("meshes", mesh);
+    file.push("nodes", json!({"mesh": mesh}));
+    for list in ["extensionsUsed", "extensionsRequired"] {
+        file.json[list] = json!(["KHR_draco_mesh_compression"]);
+    }
+    let picture = file.picture();
+    assert_eq!(picture.notes, ["not drawn: KHR_draco_mesh_compression"]);
+    assert!(picture.covered > 0.2, "the other mesh is drawn");
 }
 
 #[test]
@@ -289,8 +325,8 @@ fn stays_in_view(file: &File) {
     let mut session = Session::new(&mut asset, Renderer::Cpu).unwrap();
     for step in 0..=100 {
         let time = Time::Fraction(f64::from(step) / 100.0);
-        let background = Background::Transparent;
-        let picture = session.picture(&mut asset, Some(0), time, (128, 80), background).unwrap();
+        let style = Style { background: Background::Transparent, ..style((128, 80)) };
+        let picture = session.picture(&mut asset, Some(0), time, &style).unwrap();
         assert!(picture.covered > 0.0);
         for (x, y, pixel) in picture.pixels.enumerate_pixels() {
             let border = x < 3 || y < 2 || x > 124 || y > 77;
@@ -352,11 +388,11 @@ fn a_look_sees_what_is_long_and_thin_but_not_what_is_clear() {
 fn sizes_out_of_range_are_errors() {
     let file = plain_house();
     for size in [(0, 9), (9, 0), (MOST_PIXELS + 1, 9), (9, u32::MAX)] {
-        let result = thumbnail(&mut file.asset(), &Options { size, ..options() });
+        let result = thumbnail(&mut file.asset(), &Options { style: style(size), ..options() });
         assert!(matches!(result, Err(Error::Size(..))), "{size:?}");
     }
     for size in [(1, 1), (MOST_PIXELS, 1), (1, MOST_PIXELS)] {
-        let picture = thumbnail(&mut file.asset(), &Options { size, ..options() }).unwrap();
+        let picture = thumbnail(&mut file.asset(), &Options { style: style(size), ..options() }).unwrap();
         assert_eq!(picture.pixels.dimensions(), size);
     }
 }

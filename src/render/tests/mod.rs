@@ -3,8 +3,10 @@
 mod cpu;
 mod gpu;
 mod load;
+mod pictures;
 
-use super::frame::{Frame, Framing};
+use super::frame::Frame;
+use super::framing::Framing;
 use super::scene::{Alpha, Level, Material, Part, Scene, Texture, Vertex, Wrap};
 use glam::{DMat4, DQuat, DVec3};
 use std::sync::Arc;
