@@ -14,7 +14,7 @@ use gltf::json::Node;
 const BETWEEN: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// In how many parts an interval is looked at over time.
-const PARTS: u32 = 16;
+const PARTS: u32 = 32;
 
 /// The largest difference at some kind of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -114,7 +114,7 @@ pub fn compare(
 }
 
 /// How far off a node is over time: times in rising order, each with degrees or units, at
-/// the file's keys and at every sixteenth of the way between them. A node that the clip does
+/// the file's keys and at every 32nd part of the way between them. A node that the clip does
 /// not move is looked at in the same way between `keys`.
 pub fn over_time(
     asset: &mut Asset,
@@ -350,9 +350,9 @@ mod tests {
         let curve = |t: f64| turn(40.0 * t * t);
         let mut note = |time: f64, off: f64| seen.push((time, off));
         over_time(&mut asset, &clip, 0, &[0.0, 1.0], &Curve::Rotation(&curve), &mut note).unwrap();
-        assert_eq!(seen.len(), 33);
+        assert_eq!(seen.len(), 65);
         for (i, (time, off)) in seen.into_iter().enumerate() {
-            assert_eq!(time, i as f64 / 32.0);
+            assert_eq!(time, i as f64 / 64.0);
             let u = 2.0 * time % 1.0;
             assert!((off - 10.0 * u * (1.0 - u)).abs() < 1e-5, "{time}: {off}");
         }

@@ -21,6 +21,8 @@ mod diff;
 mod example;
 #[cfg(feature = "cli")]
 mod fewest;
+#[cfg(all(feature = "cli", feature = "plot", feature = "render"))]
+mod gallery;
 #[cfg(feature = "cli")]
 mod help;
 #[cfg(feature = "cli")]
