@@ -44,9 +44,9 @@ pub enum Error {
         /// Whether there are schemes to leave out.
         several_schemes: bool,
     },
-    /// Copies of what is held.
-    #[error("{0}: copies of poses that are held (--scheme step) cannot be made; leave out --repeat")]
-    HeldCopies(String),
+    /// Copies of what has keys of its own, by a flag.
+    #[error("{0}: copies share samples that are taken at a rate: leave out {1} or --repeat")]
+    Copies(String, &'static str),
     /// A tolerance that cannot be kept.
     #[error("{source_name}: {}", unkept(*.error, unit, *.reserve, *.shared))]
     Fewest {

@@ -98,8 +98,9 @@ impl<'a> ClipPlan<'a> {
         let (object, cameras) = (ground.moves(scheme), ground.camera_moves(scheme));
         let held = |(_, a_move): &(Mover, Move)| matches!(a_move, Move::Keys(motion) if motion.is_step());
         let some_are_held = object.iter().any(held);
-        if some_are_held && ground.stream().count > 1 {
-            return Err(Unsampled::HeldCopies);
+        let by_tolerance = matches!(options.sampling, Sampling::Fewest(_));
+        if ground.stream().count > 1 && (some_are_held || by_tolerance) {
+            return Err(Unsampled::Copies(if by_tolerance { "--tolerance" } else { "--scheme step" }));
         }
         let when = match &options.sampling {
             &Sampling::Rate { fps, key_times } if some_are_held => {
@@ -163,7 +164,8 @@ impl<'a> ClipPlan<'a> {
 enum Unsampled {
     TooFine(TooFine),
     Fewest(Unkept),
-    HeldCopies,
+    /// Of what has keys of its own, by this flag.
+    Copies(&'static str),
 }
 
 impl From<TooFine> for Unsampled {
@@ -194,7 +196,7 @@ impl<'a> Plan<'a> {
                 Unsampled::Fewest(Unkept { error, unit, reserve, shared }) => {
                     Error::Fewest { source_name: source_name.to_owned(), error, unit, reserve, shared }
                 }
-                Unsampled::HeldCopies => Error::HeldCopies(source_name.to_owned()),
+                Unsampled::Copies(flag) => Error::Copies(source_name.to_owned(), flag),
             })
         };
         let clips = schemes.iter().map(clip).collect::<Result<_, _>>()?;

@@ -106,13 +106,10 @@ impl Chain<'_> {
     /// The distances at the start, half way and at the end of the stretches between moments.
     fn look(&self, moments: &[f64]) -> Vec<[f64; 3]> {
         let mut cursor = Cursor::default();
-        let mut before = None;
+        // The start is looked at anew: some schemes jump at keys.
         let look = |pair: &[f64]| {
             let stretch = self.stretch(&mut cursor, pair[0], pair[1]);
-            let from = before.unwrap_or_else(|| stretch.at(pair[0]));
-            let to = stretch.at(pair[1]);
-            before = Some(to);
-            [from, stretch.at(0.5 * (pair[0] + pair[1])), to]
+            [pair[0], 0.5 * (pair[0] + pair[1]), pair[1]].map(|t| stretch.at(t))
         };
         moments.windows(2).map(look).collect()
     }
