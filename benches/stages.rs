@@ -66,6 +66,18 @@ fn curve(bencher: Bencher, scheme: &str) {
     });
 }
 
+/// One core, float64: many samples at once, so many a segment.
+#[divan::bench(args = SCHEMES, consts = [1, 3, 10])]
+fn curve_at_all<const PER: usize>(bencher: Bencher, scheme: &str) {
+    let clip = keyframes(1, 10_000).clip;
+    let motion = Motion::new(&clip.times, &clip.tracks[0], Scheme::from_name(scheme).unwrap(), Ends::Natural);
+    let places = clip.times.windows(2).flat_map(|key| {
+        (0..PER).map(|i| (key[0] + (key[1] - key[0]) * (0.37 + i as f64) / PER as f64) as f32)
+    });
+    let times: Vec<f32> = places.collect();
+    bencher.counter(ItemsCount::new(times.len())).bench(|| motion.at_all(black_box(&times)));
+}
+
 /// All cores, with the bound on playback's deviation.
 #[divan::bench(args = SCHEMES)]
 fn sample(bencher: Bencher, scheme: &str) {

@@ -317,7 +317,15 @@ fn glb(job: &Job, plan: &Plan, options: &Convert) -> Result<Written, Failure> {
     let (_, facts) = plan.write_glb(buffered, |n| progress.advance(n)).map_err(failed)?;
     let file = output.file().try_clone().map_err(failed)?;
     let bytes = file.metadata().map_err(failed)?.len();
-    let asset = checked(job, Box::new(file), Box::new(Beside::the(&job.output)))?;
+    // The disk works while the file is checked.
+    let check = || checked(job, Box::new(file), Box::new(Beside::the(&job.output)));
+    let (settled, asset) = std::thread::scope(|scope| {
+        let settled = scope.spawn(|| output.settle());
+        let asset = check();
+        (settled.join(), asset)
+    });
+    settled.expect("waiting for the disk does not panic")?;
+    let asset = asset?;
     Ok(Written { outputs: vec![output], facts, bytes, asset, bin_name: String::new() })
 }
 

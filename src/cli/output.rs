@@ -76,6 +76,15 @@ impl Output {
         self.file.get()
     }
 
+    /// Waits until the disk has all that was written so far.
+    pub(super) fn settle(&self) -> Result<(), Failure> {
+        let synced = match (&self.file, &self.target) {
+            (Aside::Spool(_), _) => Ok(()),
+            (file, _) => file.get().sync_data(),
+        };
+        synced.map_err(|error| Failure::environment(format!("{}: cannot be written: {error}", self.shown)))
+    }
+
     /// Changes the name that the file will take, within the same folder.
     pub(super) fn rename(&mut self, path: &Path) {
         self.shown = path.display().to_string();

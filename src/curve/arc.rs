@@ -1,7 +1,8 @@
 //! What every scheme's segment can do, and the simplest of them.
 
 use super::Rates;
-use crate::math::{Quat, Scalar, Vec3};
+use super::rule::{Formula, Paced};
+use crate::math::{Number, Quat, Scalar, Vec3};
 
 /// A rotation as a smooth function of u in 0..=1.
 pub trait Arc {
@@ -20,42 +21,61 @@ pub trait Arc {
 /// sin(uφ)/sin φ · end, but without a quotient that fails for tiny φ.
 /// Source: Shoemake 1985; docs/math/slerp.md.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct GreatArc {
-    start: Quat,
-    across: Quat,
-    angle: f64,
+pub(super) struct GreatArc<N = f64> {
+    start: Quat<N>,
+    across: Quat<N>,
+    angle: N,
 }
 
-impl GreatArc {
+impl<N: Number> GreatArc<N> {
     /// The logarithm of the step from start to end.
-    pub(super) fn step(&self) -> Vec3 {
+    #[inline(always)]
+    pub(super) fn step(&self) -> Vec3<N> {
         (self.start.conjugate() * self.across).v * self.angle
     }
 
     /// The arc from `start` to `end`, both of unit length; their signs count.
-    pub(super) fn new(start: Quat, end: Quat) -> GreatArc {
-        let log = (start.conjugate() * end).log();
+    #[inline(always)]
+    pub(super) fn new(start: Quat<N>, end: Quat<N>) -> GreatArc<N> {
+        let log = N::log(start.conjugate() * end);
         let (angle, axis) = direction(log);
-        GreatArc { start, across: start * Quat { w: 0.0, v: axis }, angle }
+        GreatArc { start, across: start * Quat { w: N::from(0.0), v: axis }, angle }
+    }
+}
+
+impl<N: Copy> Formula<N> for GreatArc<N> {
+    #[inline(always)]
+    fn point<S: Scalar + From<N>>(&self, u: S) -> Quat<S> {
+        let (sin, cos) = (u * S::from(self.angle)).sin_cos();
+        let (a, b) = (Quat::<S>::constant(self.start), Quat::<S>::constant(self.across));
+        Quat { w: a.w * cos + b.w * sin, v: a.v * cos + b.v * sin }
     }
 }
 
 impl Arc for GreatArc {
+    #[inline(always)]
     fn at<S: Scalar>(&self, u: S) -> Quat<S> {
-        let (sin, cos) = (u * S::constant(self.angle)).sin_cos();
-        let (a, b) = (Quat::constant(self.start), Quat::constant(self.across));
-        Quat { w: a.w * cos + b.w * sin, v: a.v * cos + b.v * sin }
+        self.point(u)
     }
 
     fn rates(&self) -> Rates {
-        Rates { speed: self.angle, acceleration: 0.0 }
+        self.pace()
+    }
+}
+
+impl<N: Number> Paced<N> for GreatArc<N> {
+    #[inline(always)]
+    fn pace(&self) -> Rates<N> {
+        Rates { speed: self.angle, acceleration: N::from(0.0) }
     }
 }
 
 /// Length and unit direction of a vector; the zero vector has the direction zero.
-pub(super) fn direction(v: Vec3) -> (f64, Vec3) {
-    let length = v.length();
-    if length == 0.0 { (0.0, Vec3::ZERO) } else { (length, v * (1.0 / length)) }
+#[inline(always)]
+pub(super) fn direction<N: Number>(v: Vec3<N>) -> (N, Vec3<N>) {
+    let length = N::length(v);
+    let scale = length.below(f64::MIN_POSITIVE, N::from(0.0), N::from(1.0) / length);
+    (length, v * scale)
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! `bessel-overhauser`: `bessel` by powers and products of quaternions.
 
-use super::cumulative::{Corner, CumulativeCubic, from_handles, log_of_product};
-use super::rule::{Rule, Smoothness, Span};
-use crate::math::{Quat, Vec3};
+use super::Tcb;
+use super::cumulative::{Corner, CumulativeCubic, Handles, log_of_product};
+use super::rule::{Broad, Rule, Smoothness, Span};
+use crate::math::{Number, Quat, Vec3};
 
 /// Bessel's tangents as a product of powers; docs/math/bessel-overhauser.md.
 pub(super) struct BesselOverhauser;
@@ -14,7 +15,14 @@ impl Rule for BesselOverhauser {
     type Arc = CumulativeCubic;
 
     fn arc(span: &Span) -> CumulativeCubic {
-        from_handles(span, |corner, h| velocity(corner) * (h / 3.0))
+        BesselOverhauser::curve(span)
+    }
+}
+
+impl Handles for BesselOverhauser {
+    #[inline(always)]
+    fn leaving<N: Number>(corner: &Corner<N>, h: N, _tcb: Tcb) -> Vec3<N> {
+        velocity(corner) * (h * N::constant(1.0 / 3.0))
     }
 }
 
@@ -22,15 +30,18 @@ impl Rule for BesselOverhauser {
 ///
 /// Only the powers are quaternions. The quotient stays a vector: as a power it would
 /// wrap once the time unit is small enough.
-fn velocity(Corner { before, key, after }: &Corner) -> Vec3 {
+#[inline(always)]
+fn velocity<N: Number>(Corner { before, key, after }: &Corner<N>) -> Vec3<N> {
     let (to, from) = powers(before.key, *key, after.key, before.h, after.h);
-    log_of_product(Quat::exp(to) * Quat::exp(from), || to + from) * (1.0 / (before.h + after.h))
+    let product = Quat::exp(to) * Quat::exp(from);
+    log_of_product(product, to + from) * (N::constant(1.0) / (before.h + after.h))
 }
 
 /// The logarithms of the two powers.
-fn powers(before: Quat, key: Quat, after: Quat, h0: f64, h1: f64) -> (Vec3, Vec3) {
-    let to = (before.conjugate() * key).log() * (h1 / h0);
-    let from = (key.conjugate() * after).log() * (h0 / h1);
+#[inline(always)]
+fn powers<N: Number>(before: Quat<N>, key: Quat<N>, after: Quat<N>, h0: N, h1: N) -> (Vec3<N>, Vec3<N>) {
+    let to = N::log(before.conjugate() * key) * (h1 / h0);
+    let from = N::log(key.conjugate() * after) * (h0 / h1);
     (to, from)
 }
 

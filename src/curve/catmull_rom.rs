@@ -1,8 +1,9 @@
 //! `catmull-rom`: at each key the curve runs parallel to the chord of its neighbours.
 
-use super::cumulative::{Corner, CumulativeCubic, from_handles, log_of_product};
-use super::rule::{Rule, Smoothness, Span};
-use crate::math::Vec3;
+use super::Tcb;
+use super::cumulative::{Corner, CumulativeCubic, Handles, log_of_product};
+use super::rule::{Broad, Rule, Smoothness, Span};
+use crate::math::{Number, Vec3};
 
 /// Catmull and Rom 1974, for rotations in the form of Kim, Kim and Shin 1995;
 /// docs/math/catmull-rom.md.
@@ -15,13 +16,20 @@ impl Rule for CatmullRom {
     type Arc = CumulativeCubic;
 
     fn arc(span: &Span) -> CumulativeCubic {
-        from_handles(span, |corner, _h| chord(corner) * (1.0 / 6.0))
+        CatmullRom::curve(span)
+    }
+}
+
+impl Handles for CatmullRom {
+    #[inline(always)]
+    fn leaving<N: Number>(corner: &Corner<N>, _h: N, _tcb: Tcb) -> Vec3<N> {
+        chord(corner) * N::constant(1.0 / 6.0)
     }
 }
 
 /// log q₀⁻¹q₂ for the neighbours q₀, q₂ of a key.
-fn chord(Corner { before, key, after }: &Corner) -> Vec3 {
-    log_of_product(before.key.conjugate() * after.key, || {
-        (before.key.conjugate() * *key).log() + (key.conjugate() * after.key).log()
-    })
+#[inline(always)]
+fn chord<N: Number>(Corner { before, key, after }: &Corner<N>) -> Vec3<N> {
+    let sum = N::log(before.key.conjugate() * *key) + N::log(key.conjugate() * after.key);
+    log_of_product(before.key.conjugate() * after.key, sum)
 }

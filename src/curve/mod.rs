@@ -16,6 +16,7 @@ mod catmull_rom;
 mod cumulative;
 mod ends;
 mod kochanek_bartels;
+mod lanes;
 mod motion;
 mod natural_c2;
 mod nlerp;

@@ -2,6 +2,7 @@
 
 use super::arc::GreatArc;
 use super::cumulative::CumulativeCubic;
+use super::lanes::{self, Inner};
 use super::scheme::Segment;
 use super::track::Track;
 use super::{Arc, Ends, Rates, Scheme, Tcb, natural_c2, ramp_start};
@@ -51,6 +52,16 @@ impl Piece {
     /// are clamped.
     pub fn parameter(&self, t: f64) -> f64 {
         ((t - self.start) / (self.end - self.start)).clamp(0.0, 1.0)
+    }
+
+    /// The rotations at many parameters, by vector code.
+    pub(super) fn fill(&self, us: &[f64], out: &mut [Quat]) {
+        match &self.shape {
+            Shape::Rest(q) => out.fill(*q),
+            Shape::Ramp(arc) => lanes::fill(arc, us, out),
+            Shape::Segment(segment) => segment.fill(us, out),
+            Shape::Cubic(cubic) => lanes::fill(cubic, us, out),
+        }
     }
 
     /// The piece's length, seconds.
@@ -142,10 +153,30 @@ impl<'a> Motion<'a> {
         self.holds().then(|| ramp_start(self.track.times[0], self.track.times[1]))
     }
 
+    /// Key i, which the motion passes unless its scheme smooths.
+    pub(crate) fn key(&self, i: usize) -> Quat {
+        self.track.key(i)
+    }
+
     /// The rotation at a time; before the first and after the last key that key's.
     pub fn at(&self, t: f64) -> Quat {
         let piece = self.piece_at(t);
         piece.at(piece.parameter(t))
+    }
+
+    /// The motion at increasing times, in order: as [`Motion::at`] but for the last digits of
+    /// float64, and by vector code.
+    pub fn at_all<T: Copy + Into<f64>>(&self, times: &[T]) -> Vec<Quat> {
+        lanes::at_all(self, times)
+    }
+
+    /// Bounds of the rates, by seconds, of segments that follow each other: of those that
+    /// vector code can tell them of, and that run from key to key.
+    pub(crate) fn rates_of(&self, segments: std::ops::Range<usize>) -> Vec<Option<Rates>> {
+        match self.inner() {
+            Some(inner) => lanes::rates(&inner, segments, self.tcb()),
+            None => vec![None; segments.len()],
+        }
     }
 
     /// The piece that holds a time: of two that meet there, the later one. From the last
@@ -160,6 +191,36 @@ impl<'a> Motion<'a> {
         }
         let segment = times.partition_point(|&key| key <= t).saturating_sub(1).min(last);
         self.piece(segment, t)
+    }
+
+    /// The segment that holds a time; `near` is one that does not lie behind it.
+    pub(crate) fn segment_at(&self, t: f64, near: usize) -> usize {
+        let times = self.track.times;
+        let last = times.len() - 2;
+        // From key to key, then in strides that double.
+        let (mut low, mut stride) = (near, 1);
+        while low + stride <= last && times[low + stride] <= t {
+            low += stride;
+            stride *= 2;
+        }
+        let high = (low + stride).min(last + 1);
+        low + times[low + 1..high].partition_point(|&key| key <= t)
+    }
+
+    /// The segments that can be worked out side by side, if the scheme is one of those.
+    pub(super) fn inner(&self) -> Option<Inner<'a>> {
+        let Course::Scheme(scheme, ..) = &self.course else { return None };
+        let Track { times, keys, .. } = self.track;
+        // Two keys at either end: the second has an end for a neighbour.
+        let segments = 2..times.len().saturating_sub(3);
+        (scheme.is_broad() && !self.holds()).then_some(Inner { scheme: *scheme, times, keys, segments })
+    }
+
+    pub(super) fn tcb(&self) -> Tcb {
+        match &self.course {
+            Course::Scheme(_, tcb, _) => *tcb,
+            Course::Controls => Tcb::default(),
+        }
     }
 
     /// The piece of segment `i`, from key i to key i + 1, that holds the time t.

@@ -6,11 +6,11 @@ use crate::math::{Interval, Jet};
 /// Upper bounds of half the angular speed and half the angular acceleration (the units
 /// of logarithms) on a stretch of a curve, by the curve's parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rates {
+pub struct Rates<N = f64> {
     /// Half the angular speed.
-    pub speed: f64,
+    pub speed: N,
     /// Half the angular acceleration.
-    pub acceleration: f64,
+    pub acceleration: N,
 }
 
 impl Rates {

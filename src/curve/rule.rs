@@ -1,8 +1,8 @@
 //! What a scheme is asked for, and what it is told.
 
 use super::track::Track;
-use super::{Arc, Tcb};
-use crate::math::{Quat, Vec3};
+use super::{Arc, Rates, Tcb};
+use crate::math::{Number, Quat, Scalar, Vec3};
 
 /// Where a scheme's motion has no jumps in speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,9 +21,9 @@ pub enum Smoothness {
 
 /// A neighbouring key and the time to it, seconds.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Neighbour {
-    pub(super) key: Quat,
-    pub(super) h: f64,
+pub(super) struct Neighbour<N = f64> {
+    pub(super) key: Quat<N>,
+    pub(super) h: N,
     /// Whether no key lies beyond it.
     pub(super) is_end: bool,
 }
@@ -41,36 +41,39 @@ pub(super) enum End {
 
 /// One segment with its surroundings: two keys h seconds apart, and their neighbours.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Span {
+pub(super) struct Span<N = f64> {
     /// The key before; none at an end.
-    pub(super) before: Option<Neighbour>,
-    pub(super) start: Quat,
-    pub(super) end: Quat,
-    pub(super) h: f64,
+    pub(super) before: Option<Neighbour<N>>,
+    pub(super) start: Quat<N>,
+    pub(super) end: Quat<N>,
+    pub(super) h: N,
     /// The key after; none at an end.
-    pub(super) after: Option<Neighbour>,
+    pub(super) after: Option<Neighbour<N>>,
     pub(super) end_rule: End,
     /// Lengths of this segment, in the middle, and of two on either side, seconds; what
     /// lies beyond an end mirrors what lies before it.
-    pub(super) intervals: [f64; 5],
+    pub(super) intervals: [N; 5],
     /// Half the angular velocities at both keys, in the key's own frame, per second: of
     /// schemes that work them out for a whole track, else zero.
-    pub(super) velocities: [Vec3; 2],
+    pub(super) velocities: [Vec3<N>; 2],
     pub(super) tcb: Tcb,
 }
 
-impl Span {
+impl<N: Number> Span<N> {
     /// The key before; where the end key counts twice, that.
-    pub(super) fn before_or_repeated(&self) -> Option<Neighbour> {
+    #[inline(always)]
+    pub(super) fn before_or_repeated(&self) -> Option<Neighbour<N>> {
         self.before.or_else(|| self.repeated(self.start))
     }
 
     /// The key after; where the end key counts twice, that.
-    pub(super) fn after_or_repeated(&self) -> Option<Neighbour> {
+    #[inline(always)]
+    pub(super) fn after_or_repeated(&self) -> Option<Neighbour<N>> {
         self.after.or_else(|| self.repeated(self.end))
     }
 
-    fn repeated(&self, key: Quat) -> Option<Neighbour> {
+    #[inline(always)]
+    fn repeated(&self, key: Quat<N>) -> Option<Neighbour<N>> {
         (self.end_rule == End::Repeat).then_some(Neighbour { key, h: self.h, is_end: true })
     }
 }
@@ -93,4 +96,22 @@ pub(super) trait Rule {
     const VELOCITIES: Option<Velocities> = None;
     type Arc: Arc + Copy;
     fn arc(span: &Span) -> Self::Arc;
+}
+
+/// A scheme whose curve is worked out for many segments side by side too: its formulas hold
+/// for any kind of number.
+pub(super) trait Broad {
+    type Curve<N: Number>: Formula<N> + Paced<N>;
+    fn curve<N: Number>(span: &Span<N>) -> Self::Curve<N>;
+}
+
+/// A curve made of numbers N, as a function of u.
+pub(super) trait Formula<N> {
+    fn point<S: Scalar + From<N>>(&self, u: S) -> Quat<S>;
+}
+
+/// A curve whose rates have bounds in closed form, for any kind of number.
+pub(super) trait Paced<N> {
+    /// As [`Arc::rates`].
+    fn pace(&self) -> Rates<N>;
 }

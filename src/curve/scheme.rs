@@ -2,7 +2,7 @@
 
 use super::rule::{Rule, Smoothness, Span, Velocities};
 use super::{
-    Arc, Rates, b_spline, barry_goldman, bessel, bessel_overhauser, catmull_rom, kochanek_bartels,
+    Arc, Rates, b_spline, barry_goldman, bessel, bessel_overhauser, catmull_rom, kochanek_bartels, lanes,
     natural_c2, nlerp, slerp, squad, step,
 };
 use crate::math::{Quat, Scalar};
@@ -60,6 +60,13 @@ macro_rules! schemes {
             }
         }
 
+        impl Segment {
+            /// The rotations at many parameters, by vector code.
+            pub(super) fn fill(&self, us: &[f64], out: &mut [Quat]) {
+                match self { $(Segment::$name(arc) => lanes::fill(arc, us, out),)* }
+            }
+        }
+
         impl Arc for Segment {
             fn at<S: Scalar>(&self, u: S) -> Quat<S> {
                 match self { $(Segment::$name(arc) => arc.at(u),)* }
@@ -91,6 +98,12 @@ impl Scheme {
     /// Whether its motion is held from key to key and jumps: what only STEP channels show.
     pub fn is_step(self) -> bool {
         self.smoothness() == Smoothness::Jumps
+    }
+
+    /// Whether its segments can be worked out side by side: see [`super::lanes`].
+    pub(super) fn is_broad(self) -> bool {
+        use Scheme::{Bessel, BesselOverhauser, CatmullRom, KochanekBartels, Slerp, Squad};
+        matches!(self, Slerp | Squad | CatmullRom | Bessel | BesselOverhauser | KochanekBartels)
     }
 
     /// Whether tension, continuity and bias shape it.

@@ -1,7 +1,8 @@
 //! `slerp`: constant speed from key to key, a corner at each.
 
 use super::arc::GreatArc;
-use super::rule::{Rule, Smoothness, Span};
+use super::rule::{Broad, Rule, Smoothness, Span};
+use crate::math::Number;
 
 /// Shoemake 1985; docs/math/slerp.md.
 pub(super) struct Slerp;
@@ -14,6 +15,15 @@ impl Rule for Slerp {
     type Arc = GreatArc;
 
     fn arc(span: &Span) -> GreatArc {
+        Slerp::curve(span)
+    }
+}
+
+impl Broad for Slerp {
+    type Curve<N: Number> = GreatArc<N>;
+
+    #[inline(always)]
+    fn curve<N: Number>(span: &Span<N>) -> GreatArc<N> {
         GreatArc::new(span.start, span.end)
     }
 }

@@ -110,11 +110,13 @@ impl Div for Interval {
     }
 }
 
-impl Scalar for Interval {
-    fn constant(x: f64) -> Self {
+impl From<f64> for Interval {
+    fn from(x: f64) -> Self {
         Interval::new(x, x)
     }
+}
 
+impl Scalar for Interval {
     fn sqrt(self) -> Self {
         Interval::outward(self.lo.max(0.0).sqrt(), self.hi.max(0.0).sqrt())
     }

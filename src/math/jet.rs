@@ -81,11 +81,13 @@ impl<B: Scalar> Div for Jet<B> {
     }
 }
 
-impl<B: Base> Scalar for Jet<B> {
-    fn constant(x: f64) -> Self {
+impl<B: Base> From<f64> for Jet<B> {
+    fn from(x: f64) -> Self {
         Jet { value: B::constant(x), first: B::constant(0.0), second: B::constant(0.0) }
     }
+}
 
+impl<B: Base> Scalar for Jet<B> {
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
         let first = B::constant(0.5) / root;

@@ -74,11 +74,13 @@ impl Div for Jet3 {
     }
 }
 
-impl Scalar for Jet3 {
-    fn constant(x: f64) -> Jet3 {
+impl From<f64> for Jet3 {
+    fn from(x: f64) -> Jet3 {
         Jet3([x, 0.0, 0.0, 0.0])
     }
+}
 
+impl Scalar for Jet3 {
     fn sqrt(self) -> Jet3 {
         let x = self.0[0];
         let root = x.sqrt();

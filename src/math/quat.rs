@@ -73,41 +73,53 @@ impl Quat {
     /// Half a turn away from `before` both do. Then the sign is chosen by the rotation
     /// between them: its first of x, y, z that is not zero becomes positive, so that a
     /// sign in the file decides nothing.
+    #[inline]
     pub fn aligned_to(self, before: Quat) -> Quat {
-        let relative = before.conjugate() * self;
-        let sign = if relative.w.abs() >= HALF_TURN {
-            relative.w
-        } else {
-            let v = relative.v;
-            [v.x, v.y, v.z].into_iter().find(|c| c.abs() > HALF_TURN).unwrap_or(1.0)
-        };
+        let cosine = before.dot(self);
+        let sign = if cosine.abs() >= HALF_TURN { cosine } else { half_turn_sign(before.conjugate() * self) };
         if sign < 0.0 { -self } else { self }
     }
 }
 
+/// The sign by which neighbours exactly half a turn apart follow each other: that of the
+/// axis's first part.
+#[cold]
+fn half_turn_sign(relative: Quat) -> f64 {
+    let v = relative.v;
+    [v.x, v.y, v.z].into_iter().find(|c| c.abs() > HALF_TURN).unwrap_or(1.0)
+}
+
 impl<S: Scalar> Quat<S> {
     /// The same quaternion in another kind of scalar.
-    pub fn constant(q: Quat) -> Self {
-        Quat { w: S::constant(q.w), v: Vec3::constant(q.v) }
+    #[inline(always)]
+    pub fn constant<N>(q: Quat<N>) -> Self
+    where
+        S: From<N>,
+    {
+        Quat { w: S::from(q.w), v: Vec3::constant(q.v) }
     }
 
     /// The inverse of a unit quaternion.
+    #[inline(always)]
     pub fn conjugate(self) -> Self {
         Quat { w: self.w, v: -self.v }
     }
 
     /// The scalar product of two quaternions as vectors of four.
+    #[inline(always)]
     pub fn dot(self, other: Self) -> S {
         self.w * other.w + self.v.dot(other.v)
     }
 
     /// exp of a vector: rotation about it by twice its length.
+    #[inline(always)]
     pub fn exp(v: Vec3<S>) -> Self {
         let (cos, sinc) = v.dot(v).cos_sinc_of_square();
         Quat { w: cos, v: v * sinc }
     }
 
     /// [`Quat::log`] for any scalar, for a rotation that is less than a full turn.
+    #[inline(always)]
     pub fn smooth_log(self) -> Vec3<S> {
         self.v * self.w.angle_over_sine(self.v.dot(self.v))
     }
@@ -115,6 +127,7 @@ impl<S: Scalar> Quat<S> {
 
 impl<S: Scalar> Mul for Quat<S> {
     type Output = Self;
+    #[inline(always)]
     fn mul(self, b: Self) -> Self {
         Quat { w: self.w * b.w - self.v.dot(b.v), v: b.v * self.w + self.v * b.w + self.v.cross(b.v) }
     }
@@ -122,6 +135,7 @@ impl<S: Scalar> Mul for Quat<S> {
 
 impl<S: Scalar> Neg for Quat<S> {
     type Output = Self;
+    #[inline(always)]
     fn neg(self) -> Self {
         Quat { w: -self.w, v: -self.v }
     }

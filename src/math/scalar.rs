@@ -1,5 +1,6 @@
 //! What a number must offer so that the formulas of [`crate::curve`] run on it.
 
+use super::{Quat, Vec3};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A real number, or something that computes like one: plain (`f64`), with its
@@ -10,10 +11,19 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// analytic where the curves need it, so that a formula written with them has no
 /// branches and can be differentiated or bounded as it stands.
 pub trait Scalar:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+    Copy
+    + From<f64>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
 {
     /// The scalar that stands for the number `x`.
-    fn constant(x: f64) -> Self;
+    #[inline(always)]
+    fn constant(x: f64) -> Self {
+        Self::from(x)
+    }
 
     /// The square root, of a number above 0.
     fn sqrt(self) -> Self;
@@ -30,10 +40,6 @@ pub trait Scalar:
 }
 
 impl Scalar for f64 {
-    fn constant(x: f64) -> Self {
-        x
-    }
-
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
@@ -52,6 +58,46 @@ impl Scalar for f64 {
     fn angle_over_sine(self, sine_squared: Self) -> Self {
         let sine = sine_squared.sqrt();
         if sine == 0.0 { 1.0 } else { sine.atan2(self) / sine }
+    }
+}
+
+/// A plain number, of which keys are made: `f64`, or one of many ([`super::Lane`]).
+pub trait Number: Scalar + PartialOrd {
+    /// The logarithm of a unit quaternion.
+    fn log(q: Quat<Self>) -> Vec3<Self>;
+
+    /// The length of a vector.
+    fn length(v: Vec3<Self>) -> Self;
+
+    /// `then` where this number is below a limit, else `otherwise`.
+    fn below(self, limit: f64, then: Self, otherwise: Self) -> Self;
+
+    /// The larger of two numbers.
+    fn larger(self, other: Self) -> Self;
+
+    /// The exponential of a number from 0 to 3, or up to 1e-12 of it more.
+    fn growth(self) -> Self;
+}
+
+impl Number for f64 {
+    fn log(q: Quat) -> Vec3 {
+        q.log()
+    }
+
+    fn length(v: Vec3) -> f64 {
+        v.length()
+    }
+
+    fn below(self, limit: f64, then: f64, otherwise: f64) -> f64 {
+        if self < limit { then } else { otherwise }
+    }
+
+    fn larger(self, other: f64) -> f64 {
+        self.max(other)
+    }
+
+    fn growth(self) -> f64 {
+        self.exp()
     }
 }
 

@@ -28,6 +28,7 @@ impl Vec3 {
 
 impl<S> Vec3<S> {
     /// The vector (x, y, z).
+    #[inline(always)]
     pub const fn new(x: S, y: S, z: S) -> Self {
         Vec3 { x, y, z }
     }
@@ -35,16 +36,22 @@ impl<S> Vec3<S> {
 
 impl<S: Scalar> Vec3<S> {
     /// The same vector in another kind of scalar.
-    pub fn constant(v: Vec3) -> Self {
-        Vec3::new(S::constant(v.x), S::constant(v.y), S::constant(v.z))
+    #[inline(always)]
+    pub fn constant<N>(v: Vec3<N>) -> Self
+    where
+        S: From<N>,
+    {
+        Vec3::new(S::from(v.x), S::from(v.y), S::from(v.z))
     }
 
     /// Scalar product.
+    #[inline(always)]
     pub fn dot(self, other: Self) -> S {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
     /// Vector product, right-handed.
+    #[inline(always)]
     pub fn cross(self, other: Self) -> Self {
         Vec3::new(
             self.y * other.z - self.z * other.y,
@@ -56,6 +63,7 @@ impl<S: Scalar> Vec3<S> {
 
 impl<S: Scalar> Add for Vec3<S> {
     type Output = Self;
+    #[inline(always)]
     fn add(self, b: Self) -> Self {
         Vec3::new(self.x + b.x, self.y + b.y, self.z + b.z)
     }
@@ -63,6 +71,7 @@ impl<S: Scalar> Add for Vec3<S> {
 
 impl<S: Scalar> Sub for Vec3<S> {
     type Output = Self;
+    #[inline(always)]
     fn sub(self, b: Self) -> Self {
         Vec3::new(self.x - b.x, self.y - b.y, self.z - b.z)
     }
@@ -70,6 +79,7 @@ impl<S: Scalar> Sub for Vec3<S> {
 
 impl<S: Scalar> Neg for Vec3<S> {
     type Output = Self;
+    #[inline(always)]
     fn neg(self) -> Self {
         Vec3::new(-self.x, -self.y, -self.z)
     }
@@ -77,6 +87,7 @@ impl<S: Scalar> Neg for Vec3<S> {
 
 impl<S: Scalar> Mul<S> for Vec3<S> {
     type Output = Self;
+    #[inline(always)]
     fn mul(self, s: S) -> Self {
         Vec3::new(self.x * s, self.y * s, self.z * s)
     }

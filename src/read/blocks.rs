@@ -18,6 +18,8 @@ pub(super) struct Blocks<R> {
     input: R,
     /// The beginning of a line whose end has not been read yet.
     rest: Vec<u8>,
+    /// Room that blocks were in: new pages cost as much as filling them.
+    spare: Vec<Vec<u8>>,
     line: usize,
     done: bool,
     pub(super) hasher: blake3::Hasher,
@@ -26,12 +28,22 @@ pub(super) struct Blocks<R> {
 
 impl<R: Read> Blocks<R> {
     pub(super) fn new(input: R) -> Self {
-        Blocks { input, rest: Vec::new(), line: 1, done: false, hasher: blake3::Hasher::new(), bytes: 0 }
+        Blocks {
+            input,
+            rest: Vec::new(),
+            spare: Vec::new(),
+            line: 1,
+            done: false,
+            hasher: blake3::Hasher::new(),
+            bytes: 0,
+        }
     }
 
     /// The next lines, or nothing after the last.
     pub(super) fn next(&mut self) -> io::Result<Option<Block>> {
-        let mut text = std::mem::take(&mut self.rest);
+        let mut text = self.spare.pop().unwrap_or_default();
+        text.clear();
+        text.append(&mut self.rest);
         while !self.done {
             let known = text.len();
             self.fill(&mut text)?;
@@ -39,7 +51,8 @@ impl<R: Read> Blocks<R> {
                 break;
             }
             if let Some(newline) = memchr::memrchr(b'\n', &text[known..]) {
-                self.rest = text.split_off(known + newline + 1);
+                self.rest.extend_from_slice(&text[known + newline + 1..]);
+                text.truncate(known + newline + 1);
                 break;
             }
         }
@@ -49,6 +62,11 @@ impl<R: Read> Blocks<R> {
         let line = self.line;
         self.line += memchr::memchr_iter(b'\n', &text).count();
         Ok(Some(Block { text, line }))
+    }
+
+    /// Takes the room of a block that is done with.
+    pub(super) fn reuse(&mut self, text: Vec<u8>) {
+        self.spare.push(text);
     }
 
     /// Appends the next [`BLOCK`] bytes to `text`, or what is left.

@@ -72,7 +72,10 @@ pub(super) fn start<R: Read + Send>(
         // The next block is read while this one is parsed.
         let (taken, next) = rayon::join(|| reader.take(&text, line), || blocks.next());
         match taken {
-            Ok(()) => block = next.map_err(io)?,
+            Ok(()) => {
+                block = next.map_err(io)?;
+                blocks.reuse(text);
+            }
             Err(Stop::Refused(refusal)) => return Err((*refusal).into()),
             Err(Stop::Miscounted(refusal, count)) => {
                 let rest = next.map_err(io)?;

@@ -5,6 +5,7 @@
 //! stops at the first problem. The format: docs/format.md.
 
 mod blocks;
+mod decimal;
 mod header;
 mod input;
 mod keyframes;

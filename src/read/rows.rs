@@ -85,6 +85,8 @@ fn parts(text: &[u8]) -> Vec<std::ops::Range<usize>> {
 
 fn parse_part(text: &[u8], form: Form) -> Rows {
     let mut rows = Rows::default();
+    let first = memchr::memchr(b'\n', text).map_or(text.len(), |end| end + 1);
+    rows.reserve(text.len() / first.max(1) + 1, form);
     for (number, (start, line)) in lines(text).enumerate() {
         rows.lines = number + 1;
         if let Err((offset, problem, miscounted)) = rows.take(line, (start, number), form) {
@@ -98,6 +100,15 @@ fn parse_part(text: &[u8], form: Form) -> Rows {
 type Refused = (usize, Problem, bool);
 
 impl Rows {
+    /// Makes room for rows of about the same length.
+    fn reserve(&mut self, rows: usize, form: Form) {
+        // The first line may be short for another reason: no row is shorter than its numbers.
+        let rows = rows.min(TASK / form.numbers());
+        self.times.reserve(rows);
+        self.places.reserve(rows);
+        self.keys.reserve(rows * form.boxes);
+    }
+
     fn shift(&mut self, bytes: usize, lines: usize) {
         for place in &mut self.places {
             *place = (place.0 + bytes, place.1 + lines);

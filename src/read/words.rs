@@ -1,13 +1,16 @@
 //! Words and numbers of a line, with their places.
 
+use super::decimal;
 use super::refusal::Problem;
 
 /// What separates words. A carriage return within a line is white space too.
+#[inline]
 fn is_space(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | b'\r' | b'\x0b' | b'\x0c')
 }
 
 /// The first byte at or after `from` that is no white space, or the line's end.
+#[inline]
 pub(super) fn skip_space(line: &[u8], from: usize) -> usize {
     line[from..].iter().position(|&b| !is_space(b)).map_or(line.len(), |n| from + n)
 }
@@ -28,7 +31,17 @@ pub(super) fn words(line: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
 }
 
 /// The finite number that begins at `from`, and where it ends.
+#[inline]
 pub(super) fn number(line: &[u8], from: usize) -> Result<(f64, usize), Problem> {
+    match decimal::plain(line, from) {
+        Some((value, end)) if line.get(end).is_none_or(|&b| is_space(b)) => Ok((value, end)),
+        _ => any_number(line, from),
+    }
+}
+
+/// The same in any notation.
+#[cold]
+fn any_number(line: &[u8], from: usize) -> Result<(f64, usize), Problem> {
     if let Ok((value, length)) = fast_float2::parse_partial::<f64, _>(&line[from..]) {
         let end = from + length;
         if value.is_finite() && line.get(end).is_none_or(|&b| is_space(b)) {

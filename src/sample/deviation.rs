@@ -14,9 +14,10 @@
 //! docs/math/deviation.md.
 
 use super::blend::{self, Blend};
+use super::sieve::{self, Open};
 use super::worst::{Gap, Part, Worst, parabola_peak};
 use crate::curve::{Arc, Motion, Piece, Rates};
-use crate::math::{Interval, Quat};
+use crate::math::{Interval, Quat, half_angles};
 use std::f64::consts::FRAC_PI_2;
 
 /// Samples of a motion: exact, and as written.
@@ -50,9 +51,20 @@ pub(super) struct Bounds {
 /// The bounds of a stretch.
 pub(super) fn upper_bounds(stretch: &Stretch) -> Bounds {
     let mut search = Search::new(stretch);
-    let mut i = 0;
-    while i + 1 < stretch.times.len() {
-        i = search.run_from(i);
+    let mut open = sieve::sift(&mut search);
+    if open.len() + 1 == stretch.times.len() {
+        // Nothing could be said: as it comes, so that neighbours in a piece share its rates.
+        open.sort_by_key(|open| open.interval);
+        let mut i = 0;
+        while i + 1 < stretch.times.len() {
+            i = search.run_from(i, stretch.times.len() - 1);
+        }
+    } else {
+        for Open { interval, bound } in open {
+            if !search.accept(interval, bound) {
+                search.run_from(interval, interval + 1);
+            }
+        }
     }
     let largest = search.turns.iter().copied().fold(0.0, f64::max);
     let bound = |worst: Worst, blend| 2.0 * (worst.bound() + blend::uneven_lengths(blend, largest));
@@ -86,7 +98,7 @@ pub(super) fn held_bounds(stretch: &Stretch) -> Bounds {
     Bounds { slerp: bound, nlerp: bound }
 }
 
-struct Search<'a> {
+pub(super) struct Search<'a> {
     stretch: &'a Stretch<'a>,
     playback: Vec<Quat>,
     /// Half angles between neighbours of them.
@@ -100,23 +112,69 @@ struct Search<'a> {
 impl<'a> Search<'a> {
     fn new(stretch: &'a Stretch<'a>) -> Search<'a> {
         let playback: Vec<Quat> = stretch.written.iter().map(|&q| written(q)).collect();
-        let turns = playback.windows(2).map(|pair| 0.5 * pair[0].angle_to(pair[1])).collect();
-        let at_samples: Vec<f64> =
-            playback.iter().zip(stretch.exact).map(|(p, q)| 0.5 * p.angle_to(*q)).collect();
+        let turns = half_angles(&playback[..playback.len() - 1], &playback[1..]);
+        let at_samples = half_angles(&playback, stretch.exact);
         let mut worst = Worst::new(NEGLIGIBLE);
         worst.note(at_samples.iter().copied().fold(0.0, f64::max));
         Search { stretch, playback, turns, at_samples, slerp: worst, nlerp: worst }
     }
 
-    fn time(&self, i: usize) -> f64 {
+    pub(super) fn motion(&self) -> &'a Motion<'a> {
+        self.stretch.motion
+    }
+
+    /// How many intervals there are between samples.
+    pub(super) fn intervals(&self) -> usize {
+        self.turns.len()
+    }
+
+    pub(super) fn time(&self, i: usize) -> f64 {
         f64::from(self.stretch.times[i])
     }
 
-    /// Bounds the intervals from sample i on that lie in one piece, or the one interval
+    /// The distance at a sample.
+    pub(super) fn at_sample(&self, i: usize) -> f64 {
+        self.at_samples[i]
+    }
+
+    /// Half the angular speed of playback after sample i.
+    pub(super) fn speed(&self, i: usize) -> f64 {
+        self.turns[i] / (self.time(i + 1) - self.time(i))
+    }
+
+    /// The samples that playback blends after sample i.
+    pub(super) fn ends(&self, i: usize) -> [Quat; 2] {
+        [self.playback[i], self.playback[i + 1]]
+    }
+
+    /// The share of the second of them at a time.
+    pub(super) fn share(&self, i: usize, t: f64) -> f64 {
+        (t - self.time(i)) / (self.time(i + 1) - self.time(i))
+    }
+
+    /// Takes note of a distance of playback by slerp after sample i.
+    pub(super) fn note(&mut self, i: usize, distance: f64) {
+        self.slerp.note(distance);
+        self.nlerp.note(distance - blend::drift_bound(self.turns[i]));
+    }
+
+    /// Takes a bound for the interval after sample i, if it is near enough to the worst
+    /// that was found.
+    pub(super) fn accept(&mut self, i: usize, slerp: f64) -> bool {
+        let nlerp = slerp + blend::drift_bound(self.turns[i]);
+        let good = self.slerp.accepts(slerp) && self.nlerp.accepts(nlerp);
+        if good {
+            self.slerp.settle(slerp);
+            self.nlerp.settle(nlerp);
+        }
+        good
+    }
+
+    /// Bounds the intervals from sample i to `end` that lie in one piece, or the one interval
     /// that does not; returns the sample where it stopped.
-    fn run_from(&mut self, i: usize) -> usize {
+    fn run_from(&mut self, i: usize, end: usize) -> usize {
         let piece = self.stretch.motion.piece_at(self.time(i));
-        let inside = (i + 1..self.stretch.times.len()).take_while(|&j| self.time(j) <= piece.end).count();
+        let inside = (i + 1..=end).take_while(|&j| self.time(j) <= piece.end).count();
         if inside == 0 {
             self.across(i);
             return i + 1;

@@ -1,32 +1,10 @@
 //! Every track at every sample time, in order and in parallel.
 
 use super::deviation::{self, Stretch, written};
-use super::{Encoding, Timeline};
-use crate::curve::{Arc, Motion, Piece};
+use super::{Encoding, Steps, Timeline};
+use crate::curve::Motion;
 use crate::math::Quat;
 use rayon::prelude::*;
-
-/// Turns between neighbouring samples that component-blending viewers show inexactly.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Steps {
-    /// How many exceed [`Steps::LARGE`].
-    pub large: usize,
-    /// The largest, degrees.
-    pub worst: f64,
-    /// When that one begins, seconds.
-    pub at: f64,
-}
-
-impl Steps {
-    /// Blender blends the four numbers and normalises; up to this step, in degrees, it
-    /// stays within 0.01° of slerp (about 1.2e-6 · step³).
-    pub const LARGE: f64 = 18.0;
-
-    fn and(self, b: Steps) -> Steps {
-        let worse = if b.worst > self.worst { b } else { self };
-        Steps { large: self.large + b.large, ..worse }
-    }
-}
 
 /// A rotation as a function of time.
 #[derive(Clone)]
@@ -136,7 +114,7 @@ fn sample(rotation: &Rotation, timeline: &Timeline, writing: Writing, chunk: usi
     let (before, times) = timeline.chunk(chunk);
     let times: Vec<f32> = before.into_iter().chain(times).collect();
     let exact = match rotation {
-        Rotation::Motion(motion) => evaluate(motion, &times),
+        Rotation::Motion(motion) => motion.at_all(&times),
         Rotation::Function(at) => times.iter().map(|&t| at(f64::from(t))).collect(),
     };
     let mut rotations: Vec<[f32; 4]> = exact.iter().map(|&q| writing.encoding.numbers(q)).collect();
@@ -145,7 +123,7 @@ fn sample(rotation: &Rotation, timeline: &Timeline, writing: Writing, chunk: usi
         Rotation::Motion(motion) => motion.ramp().map(|start| (start, motion.times()[1])),
         Rotation::Function(_) => None,
     };
-    let mut facts = TrackFacts { steps: steps(ramp, &times, &rotations), ..TrackFacts::default() };
+    let mut facts = TrackFacts { steps: Steps::of(ramp, &times, &rotations), ..TrackFacts::default() };
     match rotation {
         Rotation::Motion(motion) if writing.bound => {
             let stretch = Stretch { motion, times: &times, exact: &exact, written: &rotations };
@@ -188,20 +166,6 @@ fn measured(at: &dyn Fn(f64) -> Quat, times: &[f32], rotations: &[[f32; 4]], hol
     worst
 }
 
-/// The motion at increasing times.
-fn evaluate(motion: &Motion, times: &[f32]) -> Vec<Quat> {
-    let mut piece: Option<Piece> = None;
-    let at = |&t: &f32| {
-        let t = f64::from(t);
-        let current = match piece {
-            Some(current) if t < current.end => current,
-            _ => *piece.insert(motion.piece_at(t)),
-        };
-        current.at(current.parameter(t))
-    };
-    times.iter().map(at).collect()
-}
-
 /// Turns signs so that neighbours lie in one hemisphere; says whether the last one's was.
 fn align(rotations: &mut [[f32; 4]]) -> bool {
     let mut turned = false;
@@ -218,20 +182,6 @@ fn align(rotations: &mut [[f32; 4]]) -> bool {
 
 fn negate(q: &mut [f32; 4]) {
     *q = q.map(|x| -x);
-}
-
-/// The steps between neighbouring samples but for those within the ramp of a jump.
-fn steps(ramp: Option<(f64, f64)>, times: &[f32], rotations: &[[f32; 4]]) -> Steps {
-    let mut steps = Steps::default();
-    for (t, q) in times.windows(2).zip(rotations.windows(2)) {
-        let (start, end) = (f64::from(t[0]), f64::from(t[1]));
-        if ramp.is_some_and(|(from, to)| start < to as f32 as f64 && end > from as f32 as f64) {
-            continue;
-        }
-        let degrees = written(q[0]).angle_to(written(q[1])).to_degrees();
-        steps = steps.and(Steps { large: usize::from(degrees > Steps::LARGE), worst: degrees, at: start });
-    }
-    steps
 }
 
 #[cfg(test)]
