@@ -5,12 +5,15 @@
 //! cargo run --release --example floors -- read long.dat
 //! cargo run --release --example floors -- parse long.dat
 //! cargo run --release --example floors -- write long.glb
+//! cargo run --release --example floors -- keyframes long.dat
 //! ```
 //!
 //! `read` reads a file once in blocks, `parse` runs a bare loop of fast-float2 over it on
 //! one core and adds the numbers up, `write` writes a new file of the same length as the
-//! one that is named, beside it, and waits for the disk. Each prints its own seconds, without the
-//! start of the process; `parse` without reading.
+//! one that is named, beside it, and waits for the disk. `keyframes` is no floor but what
+//! dat2glb makes of the same bytes as `parse`: checked keys, and the hash of the file; with
+//! RAYON_NUM_THREADS=1 on one core too. Each prints its own seconds, without the start of the
+//! process; `parse` and `keyframes` without reading.
 
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -23,6 +26,7 @@ fn main() -> io::Result<()> {
         "read" => read(path)?,
         "parse" => parse(&std::fs::read(path)?),
         "write" => write(path)?,
+        "keyframes" => keyframes(&std::fs::read(path)?),
         _ => return usage(),
     };
     println!("{seconds:.6}");
@@ -30,7 +34,7 @@ fn main() -> io::Result<()> {
 }
 
 fn usage() -> io::Result<()> {
-    eprintln!("usage: floors read|parse|write FILE");
+    eprintln!("usage: floors read|parse|write|keyframes FILE");
     std::process::exit(2);
 }
 
@@ -55,6 +59,12 @@ fn parse(text: &[u8]) -> f64 {
         }
     }
     std::hint::black_box(sum);
+    start.elapsed().as_secs_f64()
+}
+
+fn keyframes(text: &[u8]) -> f64 {
+    let start = Instant::now();
+    std::hint::black_box(dat2glb::read::keyframes("long.dat", text, None).expect("keyframes"));
     start.elapsed().as_secs_f64()
 }
 

@@ -45,6 +45,16 @@ fn powers<N: Number>(before: Quat<N>, key: Quat<N>, after: Quat<N>, h0: N, h1: N
     (to, from)
 }
 
+/// Whether a power at a key may turn by half a turn or more: of angles up to π/2 the sine
+/// is 2/π or more. At the price of two products.
+pub(super) fn may_wrap(before: Quat, key: Quat, after: Quat, h0: f64, h1: f64) -> bool {
+    let long = |from: Quat, to: Quat, ratio: f64| {
+        let step = from.conjugate() * to;
+        step.w <= 0.0 || step.v.dot(step.v) * ratio * ratio >= 1.0
+    };
+    long(before, key, h1 / h0) || long(key, after, h0 / h1)
+}
+
 /// The larger turn of the two powers at a key, radians: beyond half a turn the power's
 /// logarithm is not the one that was meant.
 pub(super) fn largest_power(before: Quat, key: Quat, after: Quat, h0: f64, h1: f64) -> f64 {

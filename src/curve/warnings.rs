@@ -1,9 +1,10 @@
 //! What a user should know about a scheme's way with these very keys.
 
-use super::bessel_overhauser::largest_power;
+use super::bessel_overhauser::{largest_power, may_wrap};
 use super::{Ends, Motion, Scheme, Smoothness};
 use crate::clip::Warning;
 use crate::math::Quat;
+use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// Neighbouring intervals that differ by more than this are uneven.
@@ -20,7 +21,7 @@ struct Keys<'a, T> {
 /// ends do not do well. `place` says where key i stands, such as `t = 2.12 s (line 7)`.
 pub fn warnings(
     times: &[f64],
-    tracks: &[impl AsRef<[Quat]>],
+    tracks: &[impl AsRef<[Quat]> + Sync],
     place: &dyn Fn(usize) -> String,
     scheme: Scheme,
     ends: Ends,
@@ -63,16 +64,17 @@ fn uneven<T>(keys: &Keys<T>, scheme: Scheme, ends: Ends) -> Option<Warning> {
 }
 
 /// Keys at which a power of `bessel-overhauser` turns by more than 180°.
-fn wrapping<T: AsRef<[Quat]>>(keys: &Keys<T>, scheme: Scheme) -> Option<Warning> {
+fn wrapping<T: AsRef<[Quat]> + Sync>(keys: &Keys<T>, scheme: Scheme) -> Option<Warning> {
     if scheme != Scheme::BesselOverhauser {
         return None;
     }
     let times = keys.times;
     let wraps = |track: &T, i: usize| {
         let (track, h0, h1) = (track.as_ref(), times[i] - times[i - 1], times[i + 1] - times[i]);
-        largest_power(track[i - 1], track[i], track[i + 1], h0, h1) > PI
+        let [before, key, after] = [track[i - 1], track[i], track[i + 1]];
+        may_wrap(before, key, after, h0, h1) && largest_power(before, key, after, h0, h1) > PI
     };
-    let inner = 1..times.len() - 1;
+    let inner = (1..times.len() - 1).into_par_iter();
     let wrapping: Vec<usize> = inner.filter(|&i| keys.tracks.iter().any(|track| wraps(track, i))).collect();
     (!wrapping.is_empty()).then(|| {
         let message = format!(

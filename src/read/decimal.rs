@@ -14,8 +14,11 @@ const EXACT: u64 = 1 << 53;
 const POWERS: [f64; DIGITS + 1] =
     [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18];
 
+/// What so many digits more are worth.
+const SHIFTS: [u64; 9] = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000];
+
 /// The number that begins at `from` and where it ends, if it is a plain one of few digits.
-#[inline]
+#[inline(always)]
 pub(super) fn plain(line: &[u8], from: usize) -> Option<(f64, usize)> {
     let negative = *line.get(from)? == b'-';
     let start = from + usize::from(negative);
@@ -38,18 +41,21 @@ pub(super) fn plain(line: &[u8], from: usize) -> Option<(f64, usize)> {
             if digits + decimals > DIGITS {
                 return None;
             }
-            whole = whole * POWERS[count] as u64 + value;
-            at += count;
+            whole = whole * SHIFTS[count] + value;
             if count < 8 {
+                at += count;
                 break;
             }
+            // Not by `count`: the next load need not wait for it.
+            at += 8;
         }
     }
     let more = line.get(at).is_some_and(|byte| matches!(byte, b'e' | b'E'));
     if digits + decimals == 0 || whole > EXACT || more {
         return None;
     }
-    let value = whole as f64 / POWERS[decimals];
+    // From a signed number: machines have an instruction for that.
+    let value = whole as i64 as f64 / POWERS[decimals];
     Some((if negative { -value } else { value }, at))
 }
 

@@ -31,7 +31,8 @@ pub(super) fn words(line: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
 }
 
 /// The finite number that begins at `from`, and where it ends.
-#[inline]
+// A call and its result in memory would cost as much as the number.
+#[inline(always)]
 pub(super) fn number(line: &[u8], from: usize) -> Result<(f64, usize), Problem> {
     match decimal::plain(line, from) {
         Some((value, end)) if line.get(end).is_none_or(|&b| is_space(b)) => Ok((value, end)),
