@@ -18,7 +18,7 @@ def main(source, target, seconds, frames="1"):
     engine.scene.add(source)
     count = int(frames)
     for frame in range(count):
-        engine.scene.load_animation_time(float(seconds) * (frame + 0.5) / count)
+        engine.scene.animation.load_time(float(seconds) * (frame + 0.5) / count)
         picture = engine.window.render_to_image()
         picture.save(target if count == 1 else target.replace(".png", f"-{frame}.png"))
 
