@@ -254,4 +254,5 @@ def main():
         page.write_text(head + begin + bench.table.markdown() + end + rest.partition(end)[2])
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -259,10 +259,10 @@ impl<'a> Reader<'a> {
 
     fn push_time(&mut self, time: f64, text: &[u8], line: usize) -> Result<(), Refusal> {
         let before = self.times.last().copied();
-        let text = lines(text).next().map_or(b"".as_slice(), |(_, line)| line);
-        match times::next(self.start, before, time, || self.lines.of(self.times.len() - 1), text) {
+        let row = || lines(text).next().map_or(b"".as_slice(), |(_, line)| line);
+        match times::next(self.start, before, time, || self.lines.of(self.times.len() - 1), row) {
             Ok(t) => self.times.push(t),
-            Err(problem) => return Err(self.refuse(line, text, skip_space(text, 0), problem)),
+            Err(problem) => return Err(self.refuse(line, row(), skip_space(row(), 0), problem)),
         }
         Ok(())
     }

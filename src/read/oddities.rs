@@ -33,6 +33,7 @@ struct Signs {
 }
 
 impl Signs {
+    #[inline(always)]
     fn look(&mut self, x: f64) {
         self.positive |= x > 0.0;
         self.negative |= x < 0.0;
@@ -45,6 +46,7 @@ impl Signs {
 
 impl Oddities {
     /// Looks at a quaternion's parts as they stand in the file.
+    #[inline(always)]
     pub(super) fn look(&mut self, parts: [f64; 4], order: Order, line: usize) {
         let [first, .., last] = parts;
         let (scalar, other) = match order {
@@ -63,6 +65,7 @@ impl Oddities {
     }
 
     /// Looks at a quaternion's length; `index` is its box, if boxes are what it turns.
+    #[inline(always)]
     pub(super) fn measure(&mut self, norm: f64, line: usize, index: Option<usize>) {
         let off = (norm - 1.0).abs();
         self.not_unit += usize::from(off > NOT_UNIT);

@@ -305,7 +305,7 @@ impl Table {
                 self.start = *time;
             }
             let key_line = self.key_line;
-            let t = times::next(self.start, times.last().copied(), *time, || key_line, line);
+            let t = times::next(self.start, times.last().copied(), *time, || key_line, || line);
             times.push(t.map_err(|problem| (*offset, problem))?);
         }
         let mut rest = rest;

@@ -5,13 +5,14 @@ use super::words::{quoted, skip_space, words};
 
 /// The next key's time since the first, which is at `start`; `before` is the time since
 /// the first of the key before it, which stands in the line `line`. `text` holds the time
-/// as its first word.
-pub(super) fn next(
+/// as its first word; both are asked for only where something is wrong.
+#[inline]
+pub(super) fn next<'a>(
     start: f64,
     before: Option<f64>,
     time: f64,
     line: impl FnOnce() -> usize,
-    text: &[u8],
+    text: impl FnOnce() -> &'a [u8],
 ) -> Result<f64, Problem> {
     let t = time - start;
     let (expected, hint) = match before {
@@ -30,6 +31,7 @@ pub(super) fn next(
             (expected, "times must increase from row to row")
         }
     };
+    let text = text();
     let from = skip_space(text, 0);
     let found = words(&text[from..]).next().map_or_else(String::new, |(_, word)| quoted(word));
     Err(Problem::new(format!("{expected}, found {found}")).hint(hint))
