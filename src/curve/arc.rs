@@ -37,8 +37,7 @@ impl<N: Number> GreatArc<N> {
     /// The arc from `start` to `end`, both of unit length; their signs count.
     #[inline(always)]
     pub(super) fn new(start: Quat<N>, end: Quat<N>) -> GreatArc<N> {
-        let log = N::log(start.conjugate() * end);
-        let (angle, axis) = direction(log);
+        let (angle, axis) = N::polar(start.conjugate() * end);
         GreatArc { start, across: start * Quat { w: N::from(0.0), v: axis }, angle }
     }
 }

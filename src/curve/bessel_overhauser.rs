@@ -32,17 +32,18 @@ impl Handles for BesselOverhauser {
 /// wrap once the time unit is small enough.
 #[inline(always)]
 fn velocity<N: Number>(Corner { before, key, after }: &Corner<N>) -> Vec3<N> {
-    let (to, from) = powers(before.key, *key, after.key, before.h, after.h);
-    let product = Quat::exp(to) * Quat::exp(from);
-    log_of_product(product, to + from) * (N::constant(1.0) / (before.h + after.h))
+    let (to, first) = power(before.key.conjugate() * *key, after.h / before.h);
+    let (from, second) = power(key.conjugate() * after.key, before.h / after.h);
+    log_of_product(first * second, to + from) * (N::constant(1.0) / (before.h + after.h))
 }
 
-/// The logarithms of the two powers.
+/// A power of a rotation: its logarithm, and itself.
 #[inline(always)]
-fn powers<N: Number>(before: Quat<N>, key: Quat<N>, after: Quat<N>, h0: N, h1: N) -> (Vec3<N>, Vec3<N>) {
-    let to = N::log(before.conjugate() * key) * (h1 / h0);
-    let from = N::log(key.conjugate() * after) * (h0 / h1);
-    (to, from)
+fn power<N: Number>(q: Quat<N>, exponent: N) -> (Vec3<N>, Quat<N>) {
+    let (angle, axis) = N::polar(q);
+    let turn = angle * exponent;
+    let (sin, cos) = turn.sin_cos();
+    (axis * turn, Quat { w: cos, v: axis * sin })
 }
 
 /// Whether a power at a key may turn by half a turn or more: of angles up to π/2 the sine
@@ -58,6 +59,7 @@ pub(super) fn may_wrap(before: Quat, key: Quat, after: Quat, h0: f64, h1: f64) -
 /// The larger turn of the two powers at a key, radians: beyond half a turn the power's
 /// logarithm is not the one that was meant.
 pub(super) fn largest_power(before: Quat, key: Quat, after: Quat, h0: f64, h1: f64) -> f64 {
-    let (to, from) = powers(before, key, after, h0, h1);
+    let to = (before.conjugate() * key).log() * (h1 / h0);
+    let from = (key.conjugate() * after).log() * (h0 / h1);
     2.0 * to.length().max(from.length())
 }

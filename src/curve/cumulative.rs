@@ -31,7 +31,7 @@ impl<N: Number> CumulativeCubic<N> {
     #[inline(always)]
     fn between(start: Quat<N>, end: Quat<N>, first: Vec3<N>, last: Vec3<N>) -> CumulativeCubic<N> {
         let middle = Quat::exp(-first) * start.conjugate() * end * Quat::exp(-last);
-        CumulativeCubic::new(start, [first, N::log(middle), last])
+        CumulativeCubic { start, steps: [direction(first), N::polar(middle), direction(last)] }
     }
 }
 

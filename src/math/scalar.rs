@@ -66,6 +66,10 @@ pub trait Number: Scalar + PartialOrd {
     /// The logarithm of a unit quaternion.
     fn log(q: Quat<Self>) -> Vec3<Self>;
 
+    /// Length and unit direction of the logarithm of a unit quaternion; of no rotation the
+    /// direction zero.
+    fn polar(q: Quat<Self>) -> (Self, Vec3<Self>);
+
     /// The length of a vector.
     fn length(v: Vec3<Self>) -> Self;
 
@@ -82,6 +86,11 @@ pub trait Number: Scalar + PartialOrd {
 impl Number for f64 {
     fn log(q: Quat) -> Vec3 {
         q.log()
+    }
+
+    fn polar(q: Quat) -> (f64, Vec3) {
+        let sine = q.v.length();
+        if sine == 0.0 { (0.0, Vec3::ZERO) } else { (sine.atan2(q.w), q.v * (1.0 / sine)) }
     }
 
     fn length(v: Vec3) -> f64 {
