@@ -4,6 +4,7 @@ mod clips;
 mod reference;
 mod scipy;
 mod support;
+mod unsafe_code;
 
 #[cfg(feature = "cli")]
 mod check;
