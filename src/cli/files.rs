@@ -158,29 +158,59 @@ pub(super) fn cannot_read(path: &Path, error: &asset::Error) -> Failure {
 }
 
 /// Opens files beside or below a .gltf, and no others: a file from elsewhere must not
-/// make this program read what its author never saw.
+/// make this program read what its author never saw. A symbolic link counts as where it
+/// leads to; it may lead to what lies beside or below the file that the .gltf itself is a
+/// link to.
 pub(super) struct Beside {
-    folder: PathBuf,
+    gltf: PathBuf,
 }
 
 impl Beside {
     pub(super) fn the(gltf: &Path) -> Beside {
-        Beside { folder: gltf.parent().unwrap_or(Path::new("")).to_owned() }
+        Beside { gltf: gltf.to_owned() }
+    }
+
+    /// Where a file lies that the .gltf may name; there or not.
+    pub(super) fn place(&self, uri: &str) -> io::Result<PathBuf> {
+        let path = Path::new(uri);
+        let below = path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+        if !below {
+            return Err(io::Error::new(
+                io::ErrorKind::PermissionDenied,
+                "it is not beside or below the file",
+            ));
+        }
+        let place = self.gltf.with_file_name(path);
+        let Ok(meant) = place.canonicalize() else { return Ok(place) };
+        let mut folders = [folder(&self.gltf).canonicalize(), self.gltf.canonicalize().map(|g| folder(&g))]
+            .into_iter()
+            .flatten();
+        match folders.any(|folder| meant.starts_with(folder)) {
+            true => Ok(place),
+            false => {
+                let reason = format!("a link leads to {}, out of the file's folder", meant.display());
+                Err(io::Error::new(io::ErrorKind::PermissionDenied, reason))
+            }
+        }
+    }
+}
+
+fn folder(file: &Path) -> PathBuf {
+    match file.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
+        _ => PathBuf::from("."),
     }
 }
 
 impl Resolve for Beside {
     fn open(&self, uri: &str) -> io::Result<Box<dyn Source>> {
-        let path = Path::new(uri);
-        let below = path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
-        if !below {
-            let reason = format!("`{uri}` does not lie beside or below the file that names it");
-            return Err(io::Error::new(io::ErrorKind::PermissionDenied, reason));
+        let place = self.place(uri)?;
+        // Looked at before it is opened: to open a pipe waits for whoever writes to it.
+        let kind = std::fs::metadata(&place)?;
+        if !kind.is_file() {
+            let what = if kind.is_dir() { "a directory" } else { "a pipe or a device" };
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, format!("it is {what}")));
         }
-        let file = File::open(self.folder.join(path))?;
-        if file.metadata()?.is_dir() {
-            return Err(io::Error::new(io::ErrorKind::IsADirectory, format!("`{uri}` is a directory")));
-        }
-        Ok(Box::new(file))
+        Ok(Box::new(File::open(place)?))
     }
 }

@@ -123,12 +123,14 @@ fn check_neighbours(
     }
     let written = |index: &Option<usize>| reduced.files.iter().any(|file| Some(file.buffer) == *index);
     for (_, uri) in beside.iter().filter(|(index, _)| !written(index)) {
-        let (from, to) = (input.with_file_name(uri), output.with_file_name(uri));
-        let there = fs::read(&to).ok();
-        if there.is_none() && !from.exists() {
+        let (Ok(from), Ok(to)) = (Beside::the(input).place(uri), Beside::the(output).place(uri)) else {
+            continue; // nothing that is opened here
+        };
+        let there = content(&to);
+        if there.is_none() && content(&from).is_none() {
             continue; // missing before, missing after
         }
-        if there != fs::read(&from).ok() {
+        if from != to && there != content(&from) {
             return Err(Failure::usage(format!(
                 "{shown}: expected a folder that has {uri}, which the input refers to: write into the \
                  input's folder, or copy that file first"
@@ -136,6 +138,11 @@ fn check_neighbours(
         }
     }
     Ok(())
+}
+
+/// The bytes of a file; none of a pipe or a device, which may have no end.
+fn content(path: &Path) -> Option<Vec<u8>> {
+    fs::metadata(path).ok().filter(|found| found.is_file()).and_then(|_| fs::read(path).ok())
 }
 
 /// Everything written, with names yet to come; what is referred to comes first.

@@ -26,6 +26,8 @@ mod fewest;
 mod gallery;
 #[cfg(feature = "cli")]
 mod help;
+#[cfg(all(feature = "cli", feature = "render", feature = "plot", target_os = "linux"))]
+mod hostile;
 #[cfg(feature = "cli")]
 mod inspect;
 #[cfg(feature = "cli")]
