@@ -1,5 +1,6 @@
 //! Opening what the command line names.
 
+use super::aside::folder;
 use super::camera::CameraSpec;
 use super::exit::Failure;
 use dat2glb::asset::{self, Asset, Resolve, Source};
@@ -11,6 +12,8 @@ use dat2glb::read::{self, Input, Order};
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::SystemTime;
 
 /// An input's name in messages.
 pub(super) fn display_name(path: &Path) -> String {
@@ -124,6 +127,52 @@ fn short_name(path: &Path) -> String {
     }
 }
 
+/// An input file as it was when it was opened.
+struct Opened {
+    name: String,
+    file: File,
+    was: State,
+}
+
+/// Length, and when it was written last.
+type State = (u64, Option<SystemTime>);
+
+/// All inputs of what is being done now: any part of them may be read until it is done.
+static OPENED: Mutex<Vec<Opened>> = Mutex::new(Vec::new());
+
+fn opened() -> MutexGuard<'static, Vec<Opened>> {
+    OPENED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn state(file: &File) -> Option<State> {
+    let found = file.metadata().ok().filter(|found| found.is_file())?;
+    Some((found.len(), found.modified().ok()))
+}
+
+/// Keeps in mind how a file is now.
+fn remember(path: &Path, file: &File) {
+    if let (Some(was), Ok(file)) = (state(file), file.try_clone()) {
+        opened().push(Opened { name: path.display().to_string(), file, was });
+    }
+}
+
+/// Begins anew: inputs that were read before are done with.
+pub(super) fn forget() {
+    opened().clear();
+}
+
+/// Refuses inputs that were written to since they were opened: what was read of them may
+/// be half of one and half of another. One that was removed or replaced is still whole.
+pub(super) fn unchanged() -> Result<(), Failure> {
+    let opened = opened();
+    match opened.iter().find(|opened| state(&opened.file) != Some(opened.was)) {
+        None => Ok(()),
+        Some(Opened { name, .. }) => Err(Failure::refused(format!(
+            "{name}: expected a file that stays as it is while it is read, found it changed; run this again"
+        ))),
+    }
+}
+
 /// Opens an input file.
 pub(super) fn open(path: &Path) -> Result<File, Failure> {
     let refuse = |reason: String| Failure::refused(format!("{}: {reason}", path.display()));
@@ -135,7 +184,10 @@ pub(super) fn open(path: &Path) -> Result<File, Failure> {
     })?;
     match file.metadata() {
         Ok(metadata) if metadata.is_dir() => Err(refuse("expected a file, found a directory".to_owned())),
-        _ => Ok(file),
+        _ => {
+            remember(path, &file);
+            Ok(file)
+        }
     }
 }
 
@@ -182,9 +234,12 @@ impl Beside {
         }
         let place = self.gltf.with_file_name(path);
         let Ok(meant) = place.canonicalize() else { return Ok(place) };
-        let mut folders = [folder(&self.gltf).canonicalize(), self.gltf.canonicalize().map(|g| folder(&g))]
-            .into_iter()
-            .flatten();
+        let mut folders = [
+            folder(&self.gltf).canonicalize(),
+            self.gltf.canonicalize().map(|gltf| folder(&gltf).to_owned()),
+        ]
+        .into_iter()
+        .flatten();
         match folders.any(|folder| meant.starts_with(folder)) {
             true => Ok(place),
             false => {
@@ -192,13 +247,6 @@ impl Beside {
                 Err(io::Error::new(io::ErrorKind::PermissionDenied, reason))
             }
         }
-    }
-}
-
-fn folder(file: &Path) -> PathBuf {
-    match file.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
-        _ => PathBuf::from("."),
     }
 }
 
@@ -211,6 +259,8 @@ impl Resolve for Beside {
             let what = if kind.is_dir() { "a directory" } else { "a pipe or a device" };
             return Err(io::Error::new(io::ErrorKind::InvalidInput, format!("it is {what}")));
         }
-        Ok(Box::new(File::open(place)?))
+        let file = File::open(&place)?;
+        remember(&place, &file);
+        Ok(Box::new(file))
     }
 }

@@ -1,6 +1,7 @@
 //! `dat2glb reduce`: a file's animations with fewer keys, all else as it was.
 
 use super::args::Reduce;
+use super::aside::Turn;
 use super::bins::{bin_file_name, percent_encoded, remove_old_bins};
 use super::exit::{Exit, Failure, say, shown};
 use super::files::{self, Beside, display_name, is_standard};
@@ -42,13 +43,14 @@ pub(super) fn run(options: &Reduce) -> Result<Exit, Failure> {
         .collect();
     let outputs = begun(output, &read, &reduced)?;
     checked(output, &mut asset, &reduced)?;
-    for output in outputs {
-        output.commit()?;
-    }
+    files::unchanged()?;
+    let turn = (!reduced.files.is_empty()).then(|| Turn::at(output));
+    Output::commit_all(outputs)?;
     if !reduced.files.is_empty() {
         let new = reduced.files.iter().map(|file| bin_file_name(output, &file.hash));
         remove_old_bins(output, &new.chain(beside.into_iter().map(|(_, uri)| uri)).collect::<Vec<_>>());
     }
+    drop(turn);
     print(options, &reduced.facts, started)?;
     Ok(Exit::Done)
 }

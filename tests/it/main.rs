@@ -20,6 +20,12 @@ mod convert_outputs;
 mod diff;
 #[cfg(feature = "cli")]
 mod example;
+#[cfg(all(feature = "cli", feature = "render", feature = "plot", target_os = "linux"))]
+mod faults;
+#[cfg(all(feature = "cli", feature = "render", feature = "plot", target_os = "linux"))]
+mod faults_inputs;
+#[cfg(all(feature = "cli", feature = "render", feature = "plot", target_os = "linux"))]
+mod faults_killed;
 #[cfg(feature = "cli")]
 mod fewest;
 #[cfg(all(feature = "cli", feature = "plot", feature = "render"))]

@@ -14,6 +14,8 @@ pub(crate) mod schema;
 pub(crate) mod stage;
 #[cfg(feature = "cli")]
 pub(crate) mod tool;
+#[cfg(all(feature = "cli", feature = "render", feature = "plot", target_os = "linux"))]
+pub(crate) mod writers;
 
 use dat2glb::clip::Clip;
 use dat2glb::read;
