@@ -6,9 +6,11 @@
 //! has such a name and is locked by no one belonged to a process that was killed: the next
 //! one that writes into the folder removes it.
 
+use std::collections::BTreeSet;
 use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 /// Set to 1, no file is without a name: as on systems that know no such files.
 const NAMED: &str = "DAT2GLB_NAMED_TEMPORARIES";
@@ -28,7 +30,7 @@ pub(super) enum Aside {
 impl Aside {
     /// A new file in the folder that `path` is in.
     pub(super) fn beside(path: &Path) -> io::Result<Aside> {
-        remove_leftovers(folder(path));
+        remove_leftovers_once(folder(path));
         #[cfg(target_os = "linux")]
         if !only_named()
             && let Some(file) = unnamed(folder(path))?
@@ -131,6 +133,14 @@ fn name(file: &File, path: &Path) -> io::Result<()> {
         }
     }
     Err(io::Error::new(io::ErrorKind::AlreadyExists, "no free name for a temporary file"))
+}
+
+/// [`remove_leftovers`] for the first of many outputs in a folder.
+fn remove_leftovers_once(folder: &Path) {
+    static LOOKED_AT: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+    if LOOKED_AT.lock().unwrap_or_else(PoisonError::into_inner).insert(folder.to_owned()) {
+        remove_leftovers(folder);
+    }
 }
 
 /// Removes what killed processes left in a folder. That one cannot be removed is no reason
