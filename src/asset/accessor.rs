@@ -15,8 +15,8 @@ use super::{Asset, Error};
 const BLOCK: u64 = 1 << 20;
 
 /// The most elements taken from an accessor that stores none and so stands
-/// for zeros: nothing in the file backs its count.
-const ZEROS: u64 = 1 << 24;
+/// for zeros, unless the file has more bytes: nothing else backs its count.
+const ZEROS: u64 = 1 << 14;
 
 /// What an accessor holds, and where; checked against the bytes that exist.
 #[derive(Clone, Debug)]
@@ -126,7 +126,7 @@ impl Asset {
         let layout = Layout::new(kind, component);
         let elements = match view {
             Some(view) => Some(self.elements(&pointer, view.value(), offset, count, layout)?),
-            None if count > ZEROS => {
+            None if count > ZEROS && count > self.stored_bytes() => {
                 return Err(wrong("has no bufferView, and more elements than are filled with zeros here"));
             }
             None => None,

@@ -34,9 +34,8 @@ impl<T: Read + Seek + Send> Source for T {}
 pub trait Resolve: Send {
     /// Opens the file at `uri`, relative to the folder of the main file.
     ///
-    /// `uri` is percent-decoded, has no scheme and does not begin with a
-    /// slash; it may hold `..`, and whether that may be followed is for the
-    /// implementation to say.
+    /// `uri` is percent-decoded and a relative path without `..`; whether links
+    /// on its way may be followed is for the implementation to say.
     fn open(&self, uri: &str) -> io::Result<Box<dyn Source>>;
 }
 
@@ -159,6 +158,15 @@ impl Asset {
     /// How many bytes a buffer really has, whatever its `byteLength` says.
     pub fn buffer_length(&mut self, buffer: usize) -> Result<u64, Error> {
         Ok(self.store(buffer)?.length())
+    }
+
+    /// How many bytes there are in the file and its buffers together.
+    fn stored_bytes(&mut self) -> u64 {
+        let others = (0..self.stores.len()).map(|buffer| match self.store(buffer) {
+            Ok(Store::Main { .. }) | Err(_) => 0,
+            Ok(store) => store.length(),
+        });
+        others.fold(0, u64::saturating_add).saturating_add(self.container.length())
     }
 
     /// The bytes of a buffer view.

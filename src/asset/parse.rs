@@ -9,6 +9,10 @@ use super::Error;
 pub(super) fn root(json: &[u8]) -> Result<Root, Error> {
     match serde_json::from_slice(json) {
         Ok(root) => Ok(root),
+        // Parsing it as a value would keep the last of two properties of one name.
+        Err(error) if error.to_string().starts_with("duplicate field") => {
+            Err(Error::Schema(error.to_string()))
+        }
         Err(error) if error.is_data() => completed(json).ok_or_else(|| Error::Schema(error.to_string())),
         Err(error) => Err(Error::Json(error.to_string())),
     }

@@ -15,14 +15,26 @@ pub(super) fn parse(uri: &str) -> Result<Uri, String> {
         return data(rest).map(Uri::Data);
     }
     if let Some(scheme) = scheme(uri) {
-        return Err(format!("begins with `{scheme}:`; only data: URIs and relative paths are read"));
+        return Err(format!(
+            "begins with `{scheme}:`; only data: URIs and files beside or below the file are opened"
+        ));
     }
     let path = String::from_utf8(percent_decoded(uri)?)
         .map_err(|_| "is not UTF-8 once its %-escapes are decoded".to_owned())?;
-    if path.is_empty() || path.starts_with(['/', '\\']) || path.contains('\0') {
-        return Err("must be a path relative to the file's own folder".into());
+    let wrong = |what: &str| {
+        Err(format!("`{}` {what}; only files beside or below the file are opened", path.escape_debug()))
+    };
+    // Backslashes part folders on some systems, and mean the same everywhere here.
+    let drive = path.split(['/', '\\']).next().is_some_and(|first| first.ends_with(':'));
+    match path.as_str() {
+        "" => Err("is empty; it must be a path relative to the file's own folder".into()),
+        path if path.contains('\0') => wrong("holds a zero byte"),
+        path if path.starts_with(['/', '\\']) || drive => wrong("is an absolute path"),
+        path if path.split(['/', '\\']).any(|part| part == "..") => {
+            wrong("leads out of the file's folder by `..`")
+        }
+        _ => Ok(Uri::Path(path)),
     }
-    Ok(Uri::Path(path))
 }
 
 /// The scheme of a URI that has one: letters before the first colon.
@@ -128,14 +140,16 @@ mod tests {
     fn uris_are_told_apart() {
         let path = |text: &str| Ok(Uri::Path(text.into()));
         assert_eq!(parse("a%20b.bin"), path("a b.bin"));
-        assert_eq!(parse("../b.bin"), path("../b.bin"));
         assert_eq!(parse("1:2.bin"), path("1:2.bin"));
         let foo = Ok(Uri::Data(b"foo".to_vec()));
         assert_eq!(parse("data:application/octet-stream;base64,Zm9v"), foo);
         assert_eq!(parse("data:;base64,Zm9%76"), foo);
         assert_eq!(parse("data:text/plain,f%6fo"), foo);
-        for text in ["", "/etc/x", "%2Fetc/x", "http://a/b", "file:b", "C:/b", "a%2", "a%zz", "%ff", "data:x"]
+        for text in ["", "/etc/x", "%2Fetc/x", "http://a/b", "file:b", "C:/b", "C%3A/b", "a%2", "a%zz", "%ff"]
         {
+            assert!(parse(text).is_err(), "{text}");
+        }
+        for text in ["..", "../b", "a/../../b", "%2e%2E%2fb", "..\\b", "a%5C..%5cb", "data:x", "a%00b"] {
             assert!(parse(text).is_err(), "{text}");
         }
     }

@@ -67,6 +67,7 @@ catalogue! {
     JsonPadding "JSON_PADDING" Error "The JSON is padded with zero bytes instead of spaces."
     JsonByteOrderMark "JSON_BYTE_ORDER_MARK" Error "The JSON begins with a byte-order mark."
     Schema "SCHEMA" Error "The JSON lacks a required property, or one is of the wrong type."
+    JsonPartlyUnread "JSON_PARTLY_UNREAD" Warning "The JSON is nested too deeply, or holds a number too large, for all of it to be looked at; viewers may refuse it."
     Version "VERSION" Error "The file asks for another version of glTF than 2.x."
     ExtensionRequired "EXTENSION_REQUIRED" Warning "The file needs an extension that not all viewers know and this check does not look into."
     ExtensionUndeclared "EXTENSION_UNDECLARED" Error "An extension is required but not listed as used."

@@ -16,6 +16,13 @@ pub(super) fn check(asset: &mut Asset, report: &mut Report) {
     // How many vertices the indices of an accessor may name, and who says so.
     let mut indexed = BTreeMap::new();
     for (m, mesh) in root.meshes.iter().enumerate() {
+        if mesh.primitives.is_empty() {
+            report.add(
+                Code::InvalidValue,
+                format!("/meshes/{m}/primitives"),
+                "must not be empty; leave out a mesh that shows nothing",
+            );
+        }
         for (p, primitive) in mesh.primitives.iter().enumerate() {
             let place = format!("/meshes/{m}/primitives/{p}");
             attributes(root, primitive, &place, report);

@@ -115,11 +115,13 @@ fn cameras(root: &Root, report: &mut Report) {
     for (c, camera) in root.cameras.iter().enumerate() {
         if let Some(lens) = &camera.perspective {
             let far = lens.zfar.is_none_or(|far| far > lens.znear);
-            if !(lens.yfov > 0.0 && lens.znear > 0.0 && far) {
+            let above_0 = |x: f32| x > 0.0 && x.is_finite();
+            let wide = above_0(lens.yfov) && lens.aspect_ratio.is_none_or(above_0);
+            if !(wide && above_0(lens.znear) && far) {
                 report.add(
                     Code::InvalidValue,
                     format!("/cameras/{c}/perspective"),
-                    "yfov and znear must be above 0, and zfar beyond znear",
+                    "yfov, aspectRatio and znear must be finite and above 0, and zfar beyond znear",
                 );
             }
         }

@@ -13,8 +13,15 @@ pub(super) fn check(root: &Root, json: &[u8], report: &mut Report) {
     extensions(root, report);
     validate(root, report);
     channels(root, report);
-    if let Ok(value) = serde_json::from_slice(json) {
-        odd_values(&value, report);
+    match serde_json::from_slice(json) {
+        Ok(value) => odd_values(&value, report),
+        Err(error) => report.add(
+            Code::JsonPartlyUnread,
+            "",
+            format!(
+                "not all of it was looked at: {error}; keep values at most 127 deep, and numbers below 1e308"
+            ),
+        ),
     }
 }
 

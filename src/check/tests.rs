@@ -179,6 +179,9 @@ fn what_stands_around_the_json() {
 #[test]
 fn the_json_as_a_whole() {
     expect(&[("SCHEMA", "the JSON's root")], |json, _| json["nodes"] = json!(3));
+    expect(&[("JSON_PARTLY_UNREAD", "the JSON's root")], |json, _| {
+        json["extras"] = (0..200).fold(json!(0), |inner, _| json!([inner]));
+    });
     expect(&[("VERSION", "/asset/version")], |json, _| json["asset"]["version"] = json!("1.0"));
     expect(&[("VERSION", "/asset/minVersion")], |json, _| json["asset"]["minVersion"] = json!("2.1"));
     expect(&[("EXTENSION_REQUIRED", "/extensionsRequired/0")], |json, _| {

@@ -56,6 +56,7 @@ pub(super) fn print_document(run: &Run, format: Format) -> Result<(), Failure> {
 }
 
 fn one(file: &Path, options: &Check) -> Result<Report, Failure> {
+    files::forget();
     let (report, motions) = match files::asset_or_schema(file)? {
         Ok(mut asset) => {
             let mut report = check::asset(&mut asset);
@@ -70,6 +71,7 @@ fn one(file: &Path, options: &Check) -> Result<Report, Failure> {
         }
         Err(error) => return Err(files::cannot_read(file, &error)),
     };
+    files::unchanged()?;
     if !options.quiet {
         shown(print(file, options, &report, &motions))?;
     }

@@ -19,6 +19,7 @@ pub(super) fn run(options: &Compare) -> Result<Exit, Failure> {
     let file = options.input.display().to_string();
     let report =
         Report { name, file, ends: options.ends.name(), clip: &clip, boxes: &boxes, warnings: &warnings };
+    files::unchanged()?;
     shown(io::stdout().write_all(if options.json { report.json() } else { report.text() }.as_bytes()))?;
     if !options.json {
         let said = |Warning { code, message }: &Warning| {

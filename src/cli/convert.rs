@@ -1,6 +1,7 @@
 //! `dat2glb convert`: every input through all stages, one after another.
 
 use super::args::Convert;
+use super::aside::Turn;
 use super::bins::{bin_file_name, percent_encoded, remove_old_bins};
 use super::camera::CameraSpec;
 use super::check::{judged, print_document};
@@ -96,6 +97,7 @@ fn outdated(job: &Job, plan: &Plan) -> Result<Report, Failure> {
         let advice = format!("{message}; convert {} again", job.input.display());
         report.add(Code::Outdated, pointer, advice);
     }
+    files::unchanged()?;
     Ok(report)
 }
 
@@ -245,6 +247,7 @@ fn planned<T>(
     options: &Convert,
     work: impl FnOnce(&str, &Ground, &Plan) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
+    files::forget();
     let name = display_name(&job.input);
     let paths: Vec<&Path> = std::iter::once(&job.input).chain(&options.path).map(PathBuf::as_path).collect();
     let mut gathered = files::gather(&paths, options.order.order, options.frame)?;
@@ -284,12 +287,13 @@ fn write(
     let Written { outputs, facts, bytes, bin_name, .. } = written;
     let mut warnings = plan.warnings().to_vec();
     warnings.extend(facts.iter().filter_map(ClipFacts::warning));
-    for output in outputs.into_iter().chain(thumbnail) {
-        output.commit()?;
-    }
+    files::unchanged()?;
+    let turn = is_gltf(&job.output).then(|| Turn::at(&job.output));
+    Output::commit_all(outputs.into_iter().chain(thumbnail).collect())?;
     if is_gltf(&job.output) {
         remove_old_bins(&job.output, std::slice::from_ref(&bin_name));
     }
+    drop(turn);
     let summary = Summary::new(name, &job.output, ground, &facts, bytes, &warnings, started.elapsed());
     summary.print(options.json, options.quiet)
 }

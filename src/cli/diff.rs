@@ -67,6 +67,7 @@ fn compare(options: &Arguments) -> Result<(Assets, Diff), (&Path, Failure)> {
     }
     let (mut a, mut b) = (open(&options.a)?, open(&options.b)?);
     let diff = diff::files(&mut a, &mut b, &options.map).map_err(|error| failure(error, options))?;
+    files::unchanged().map_err(|failure| (options.b.as_path(), failure))?;
     Ok(((a, b), diff))
 }
 

@@ -1,5 +1,6 @@
 //! Opening what the command line names.
 
+use super::aside::folder;
 use super::camera::CameraSpec;
 use super::exit::Failure;
 use dat2glb::asset::{self, Asset, Resolve, Source};
@@ -11,6 +12,8 @@ use dat2glb::read::{self, Input, Order};
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::SystemTime;
 
 /// An input's name in messages.
 pub(super) fn display_name(path: &Path) -> String {
@@ -124,6 +127,52 @@ fn short_name(path: &Path) -> String {
     }
 }
 
+/// An input file as it was when it was opened.
+struct Opened {
+    name: String,
+    file: File,
+    was: State,
+}
+
+/// Length, and when it was written last.
+type State = (u64, Option<SystemTime>);
+
+/// All inputs of what is being done now: any part of them may be read until it is done.
+static OPENED: Mutex<Vec<Opened>> = Mutex::new(Vec::new());
+
+fn opened() -> MutexGuard<'static, Vec<Opened>> {
+    OPENED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn state(file: &File) -> Option<State> {
+    let found = file.metadata().ok().filter(|found| found.is_file())?;
+    Some((found.len(), found.modified().ok()))
+}
+
+/// Keeps in mind how a file is now.
+fn remember(path: &Path, file: &File) {
+    if let (Some(was), Ok(file)) = (state(file), file.try_clone()) {
+        opened().push(Opened { name: path.display().to_string(), file, was });
+    }
+}
+
+/// Begins anew: inputs that were read before are done with.
+pub(super) fn forget() {
+    opened().clear();
+}
+
+/// Refuses inputs that were written to since they were opened: what was read of them may
+/// be half of one and half of another. One that was removed or replaced is still whole.
+pub(super) fn unchanged() -> Result<(), Failure> {
+    let opened = opened();
+    match opened.iter().find(|opened| state(&opened.file) != Some(opened.was)) {
+        None => Ok(()),
+        Some(Opened { name, .. }) => Err(Failure::refused(format!(
+            "{name}: expected a file that stays as it is while it is read, found it changed; run this again"
+        ))),
+    }
+}
+
 /// Opens an input file.
 pub(super) fn open(path: &Path) -> Result<File, Failure> {
     let refuse = |reason: String| Failure::refused(format!("{}: {reason}", path.display()));
@@ -135,7 +184,10 @@ pub(super) fn open(path: &Path) -> Result<File, Failure> {
     })?;
     match file.metadata() {
         Ok(metadata) if metadata.is_dir() => Err(refuse("expected a file, found a directory".to_owned())),
-        _ => Ok(file),
+        _ => {
+            remember(path, &file);
+            Ok(file)
+        }
     }
 }
 
@@ -158,29 +210,57 @@ pub(super) fn cannot_read(path: &Path, error: &asset::Error) -> Failure {
 }
 
 /// Opens files beside or below a .gltf, and no others: a file from elsewhere must not
-/// make this program read what its author never saw.
+/// make this program read what its author never saw. A symbolic link counts as where it
+/// leads to; it may lead to what lies beside or below the file that the .gltf itself is a
+/// link to.
 pub(super) struct Beside {
-    folder: PathBuf,
+    gltf: PathBuf,
 }
 
 impl Beside {
     pub(super) fn the(gltf: &Path) -> Beside {
-        Beside { folder: gltf.parent().unwrap_or(Path::new("")).to_owned() }
+        Beside { gltf: gltf.to_owned() }
+    }
+
+    /// Where a file lies that the .gltf may name; there or not.
+    pub(super) fn place(&self, uri: &str) -> io::Result<PathBuf> {
+        let path = Path::new(uri);
+        let below = path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+        if !below {
+            return Err(io::Error::new(
+                io::ErrorKind::PermissionDenied,
+                "it is not beside or below the file",
+            ));
+        }
+        let place = self.gltf.with_file_name(path);
+        let Ok(meant) = place.canonicalize() else { return Ok(place) };
+        let mut folders = [
+            folder(&self.gltf).canonicalize(),
+            self.gltf.canonicalize().map(|gltf| folder(&gltf).to_owned()),
+        ]
+        .into_iter()
+        .flatten();
+        match folders.any(|folder| meant.starts_with(folder)) {
+            true => Ok(place),
+            false => {
+                let reason = format!("a link leads to {}, out of the file's folder", meant.display());
+                Err(io::Error::new(io::ErrorKind::PermissionDenied, reason))
+            }
+        }
     }
 }
 
 impl Resolve for Beside {
     fn open(&self, uri: &str) -> io::Result<Box<dyn Source>> {
-        let path = Path::new(uri);
-        let below = path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
-        if !below {
-            let reason = format!("`{uri}` does not lie beside or below the file that names it");
-            return Err(io::Error::new(io::ErrorKind::PermissionDenied, reason));
+        let place = self.place(uri)?;
+        // Looked at before it is opened: to open a pipe waits for whoever writes to it.
+        let kind = std::fs::metadata(&place)?;
+        if !kind.is_file() {
+            let what = if kind.is_dir() { "a directory" } else { "a pipe or a device" };
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, format!("it is {what}")));
         }
-        let file = File::open(self.folder.join(path))?;
-        if file.metadata()?.is_dir() {
-            return Err(io::Error::new(io::ErrorKind::IsADirectory, format!("`{uri}` is a directory")));
-        }
+        let file = File::open(&place)?;
+        remember(&place, &file);
         Ok(Box::new(file))
     }
 }

@@ -32,6 +32,7 @@ fn is_gltf(file: &Path) -> Result<bool, Failure> {
 }
 
 fn print(summary: &(impl Serialize + Display), options: &Inspect) -> Result<Exit, Failure> {
+    files::unchanged()?;
     let text = if options.json {
         let mut value = serde_json::to_value(summary).expect("plain data becomes JSON");
         value["schema"] = 1.into();

@@ -1,6 +1,7 @@
 //! What the command line adds to the library: arguments, files, messages, exit codes.
 
 mod args;
+mod aside;
 mod bins;
 mod camera;
 mod check;

@@ -1,11 +1,13 @@
 //! Files that appear whole or not at all.
 //!
-//! What is written goes to an unnamed file in the target's folder (on Linux) or to a
-//! file with a name of its own, and takes its name at the last moment. A full disk or a
-//! killed process leaves what was there before. Devices and pipes are written straight,
-//! from a temporary file, once everything is known to be good.
+//! What is written goes to a file aside and takes its name at the last moment. A full disk
+//! or a killed process leaves what was there before. Devices and pipes are written straight,
+//! from a temporary file, once everything is known to be good. Nothing is given a name if
+//! an input has changed since it was read.
 
+use super::aside::{Aside, folder};
 use super::exit::{self, Failure};
+use super::files;
 use std::fs::{self, File, Metadata};
 use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -25,19 +27,11 @@ enum Target {
     StandardOutput,
 }
 
-enum Aside {
-    #[cfg(target_os = "linux")]
-    Unnamed(File),
-    Named(tempfile::NamedTempFile),
-    /// In the system's folder for temporary files; never gets a name.
-    Spool(File),
-}
-
 impl Output {
     /// Begins a file at `path`, which must be none of the inputs.
     pub(super) fn create(path: &Path, inputs: &[PathBuf]) -> Result<Output, Failure> {
         let shown = path.display().to_string();
-        let fail = |error: io::Error| Failure::environment(format!("{shown}: cannot be written: {error}"));
+        let fail = |error: io::Error| cannot_be_written(&shown, &error);
         let existing = fs::metadata(path).ok();
         // What /dev/stdout leads to has no path of its own when it is a pipe.
         let path = match &existing {
@@ -54,7 +48,11 @@ impl Output {
                 return Ok(Output { file, target: Target::Straight(path), shown });
             }
             // A file that must not be written is not replaced either.
-            fs::OpenOptions::new().write(true).open(&path).map_err(fail)?;
+            match fs::OpenOptions::new().write(true).open(&path) {
+                // Another process has removed it since.
+                Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(fail(error)),
+                _ => {}
+            }
         }
         let file = Aside::beside(&path).map_err(fail)?;
         if let Some(existing) = existing {
@@ -91,8 +89,18 @@ impl Output {
         self.target = Target::Path(path.to_owned());
     }
 
+    /// [`Output::commit`] of several, the first of which are referred to by the last: they
+    /// take their names close together.
+    pub(super) fn commit_all(outputs: Vec<Output>) -> Result<(), Failure> {
+        for output in &outputs {
+            output.file.sync().map_err(|error| cannot_be_written(&output.shown, &error))?;
+        }
+        outputs.into_iter().try_for_each(Output::commit)
+    }
+
     /// Gives the file its name, or sends it where it goes.
     pub(super) fn commit(self) -> Result<(), Failure> {
+        files::unchanged()?;
         let shown = self.shown;
         let done = match (self.file, self.target) {
             (Aside::Spool(file), Target::StandardOutput) => {
@@ -104,101 +112,12 @@ impl Output {
             (file, Target::Path(path)) => file.take_name(&path),
             (file, Target::Straight(_) | Target::StandardOutput) => copy(file.into_file(), &mut io::sink()),
         };
-        done.map_err(|error| Failure::environment(format!("{shown}: cannot be written: {error}")))
+        done.map_err(|error| cannot_be_written(&shown, &error))
     }
 }
 
-impl Aside {
-    fn beside(path: &Path) -> io::Result<Aside> {
-        #[cfg(target_os = "linux")]
-        if let Some(file) = unnamed(folder(path))? {
-            return Ok(Aside::Unnamed(file));
-        }
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".dat2glb-").suffix(".tmp");
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            // As any new file's: the process's mask decides.
-            builder.permissions(fs::Permissions::from_mode(0o666));
-        }
-        builder.tempfile_in(folder(path)).map(Aside::Named)
-    }
-
-    fn get(&self) -> &File {
-        match self {
-            #[cfg(target_os = "linux")]
-            Aside::Unnamed(file) => file,
-            Aside::Named(file) => file.as_file(),
-            Aside::Spool(file) => file,
-        }
-    }
-
-    fn into_file(self) -> File {
-        match self {
-            #[cfg(target_os = "linux")]
-            Aside::Unnamed(file) => file,
-            Aside::Named(file) => file.into_file(),
-            Aside::Spool(file) => file,
-        }
-    }
-
-    /// Becomes the file at `path`, replacing what is there.
-    fn take_name(self, path: &Path) -> io::Result<()> {
-        self.get().sync_data()?;
-        match self {
-            #[cfg(target_os = "linux")]
-            Aside::Unnamed(file) => name(&file, path),
-            Aside::Named(file) => file.persist(path).map(drop).map_err(|error| error.error),
-            Aside::Spool(_) => Err(io::Error::other("a spooled file has no name to take")),
-        }
-    }
-}
-
-/// A file without a name in a folder; none where the file system knows no such thing.
-#[cfg(target_os = "linux")]
-fn unnamed(folder: &Path) -> io::Result<Option<File>> {
-    use rustix::fs::{Mode, OFlags};
-    use rustix::io::Errno;
-    let flags = OFlags::TMPFILE | OFlags::RDWR | OFlags::CLOEXEC;
-    match rustix::fs::open(folder, flags, Mode::from_bits_truncate(0o666)) {
-        Ok(file) => Ok(Some(file.into())),
-        Err(Errno::OPNOTSUPP | Errno::ISDIR | Errno::INVAL) => Ok(None),
-        Err(error) => Err(error.into()),
-    }
-}
-
-/// Names an unnamed file. A name that is taken cannot be linked to: the file then gets
-/// one of its own first, and is renamed.
-#[cfg(target_os = "linux")]
-fn name(file: &File, path: &Path) -> io::Result<()> {
-    use rustix::fs::{AtFlags, CWD, linkat};
-    use rustix::io::Errno;
-    use std::os::fd::AsRawFd;
-    let here = format!("/proc/self/fd/{}", file.as_raw_fd());
-    let link = |name: &Path| linkat(CWD, here.as_str(), CWD, name, AtFlags::SYMLINK_FOLLOW);
-    match link(path) {
-        Ok(()) => return Ok(()),
-        Err(Errno::EXIST) => {}
-        Err(error) => return Err(error.into()),
-    }
-    for attempt in 0..1000u32 {
-        let own = folder(path).join(format!(".dat2glb-{}-{attempt}.tmp", std::process::id()));
-        match link(&own) {
-            Ok(()) => return fs::rename(&own, path).inspect_err(|_| drop(fs::remove_file(&own))),
-            Err(Errno::EXIST) => continue,
-            Err(error) => return Err(error.into()),
-        }
-    }
-    Err(io::Error::new(io::ErrorKind::AlreadyExists, "no free name for a temporary file"))
-}
-
-/// The folder that a file is in.
-fn folder(path: &Path) -> &Path {
-    match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    }
+fn cannot_be_written(shown: &str, error: &io::Error) -> Failure {
+    Failure::environment(format!("{shown}: cannot be written: {error}"))
 }
 
 /// The file that a symbolic link leads to, there or not.

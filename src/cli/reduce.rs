@@ -1,6 +1,7 @@
 //! `dat2glb reduce`: a file's animations with fewer keys, all else as it was.
 
 use super::args::Reduce;
+use super::aside::Turn;
 use super::bins::{bin_file_name, percent_encoded, remove_old_bins};
 use super::exit::{Exit, Failure, say, shown};
 use super::files::{self, Beside, display_name, is_standard};
@@ -42,13 +43,14 @@ pub(super) fn run(options: &Reduce) -> Result<Exit, Failure> {
         .collect();
     let outputs = begun(output, &read, &reduced)?;
     checked(output, &mut asset, &reduced)?;
-    for output in outputs {
-        output.commit()?;
-    }
+    files::unchanged()?;
+    let turn = (!reduced.files.is_empty()).then(|| Turn::at(output));
+    Output::commit_all(outputs)?;
     if !reduced.files.is_empty() {
         let new = reduced.files.iter().map(|file| bin_file_name(output, &file.hash));
         remove_old_bins(output, &new.chain(beside.into_iter().map(|(_, uri)| uri)).collect::<Vec<_>>());
     }
+    drop(turn);
     print(options, &reduced.facts, started)?;
     Ok(Exit::Done)
 }
@@ -123,12 +125,14 @@ fn check_neighbours(
     }
     let written = |index: &Option<usize>| reduced.files.iter().any(|file| Some(file.buffer) == *index);
     for (_, uri) in beside.iter().filter(|(index, _)| !written(index)) {
-        let (from, to) = (input.with_file_name(uri), output.with_file_name(uri));
-        let there = fs::read(&to).ok();
-        if there.is_none() && !from.exists() {
+        let (Ok(from), Ok(to)) = (Beside::the(input).place(uri), Beside::the(output).place(uri)) else {
+            continue; // nothing that is opened here
+        };
+        let there = content(&to);
+        if there.is_none() && content(&from).is_none() {
             continue; // missing before, missing after
         }
-        if there != fs::read(&from).ok() {
+        if from != to && there != content(&from) {
             return Err(Failure::usage(format!(
                 "{shown}: expected a folder that has {uri}, which the input refers to: write into the \
                  input's folder, or copy that file first"
@@ -136,6 +140,11 @@ fn check_neighbours(
         }
     }
     Ok(())
+}
+
+/// The bytes of a file; none of a pipe or a device, which may have no end.
+fn content(path: &Path) -> Option<Vec<u8>> {
+    fs::metadata(path).ok().filter(|found| found.is_file()).and_then(|_| fs::read(path).ok())
 }
 
 /// Everything written, with names yet to come; what is referred to comes first.

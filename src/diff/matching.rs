@@ -3,6 +3,7 @@
 use super::rig::Rig;
 use serde::Serialize;
 use std::collections::HashMap;
+use std::hash::Hash;
 
 /// How two things found each other where their names did not do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -64,10 +65,8 @@ pub(super) fn nodes(a: &Rig, b: &Rig, map: &Map) -> Vec<Pair> {
     let names = |rig: &Rig| rig.joints.iter().map(|joint| joint.name.clone()).collect::<Vec<_>>();
     let mut matching = Matching::new(map.names(&names(a)), names(b));
     matching.by_name();
-    let paths = |rig: &Rig, map: &Map| -> Vec<Option<String>> {
-        (0..rig.joints.len()).map(|joint| Some(rig.path(joint, |name| map.name(name)))).collect()
-    };
-    matching.unique(Some(By::Path), &paths(a, map), &paths(b, &Map::default()));
+    let mut paths = Paths::default();
+    matching.unique(Some(By::Path), &paths.of(a, map), &paths.of(b, &Map::default()));
     matching.rest();
     matching.done()
 }
@@ -81,6 +80,23 @@ pub(super) fn clips(a: &[Option<String>], b: &[Option<String>], map: &Map) -> Ve
         matching.pair(0, 0, Some(By::Alone));
     }
     matching.done()
+}
+
+/// A number for each path from the top of a tree down, by its parent's and its last step.
+/// Written out, the paths of a deep tree would take the square of its depth.
+#[derive(Default)]
+struct Paths(HashMap<(Option<usize>, String), usize>);
+
+impl Paths {
+    fn of(&mut self, rig: &Rig, map: &Map) -> Vec<Option<usize>> {
+        let mut paths = vec![None; rig.joints.len()];
+        for &joint in &rig.order {
+            let parent = rig.joints[joint].parent.and_then(|parent| paths[parent]);
+            let (step, next) = (rig.step(joint, |name| map.name(name)), self.0.len());
+            paths[joint] = Some(*self.0.entry((parent, step)).or_insert(next));
+        }
+        paths
+    }
 }
 
 /// Two lists of names of which more and more are taken.
@@ -104,8 +120,8 @@ impl Matching {
     }
 
     /// Pairs what is free and has a key that no other free one in its file has.
-    fn unique(&mut self, by: Option<By>, a: &[Option<String>], b: &[Option<String>]) {
-        let free = |keys: &[Option<String>], free: &[bool]| -> Vec<Option<String>> {
+    fn unique<K: Clone + Eq + Hash>(&mut self, by: Option<By>, a: &[Option<K>], b: &[Option<K>]) {
+        let free = |keys: &[Option<K>], free: &[bool]| -> Vec<Option<K>> {
             keys.iter().zip(free).map(|(key, &free)| key.clone().filter(|_| free)).collect()
         };
         let (a, b) = (free(a, &self.free_a), free(b, &self.free_b));
@@ -154,11 +170,11 @@ impl Matching {
 }
 
 /// Where each key stands that stands there once; None where it does so more often.
-fn once(keys: &[Option<String>]) -> HashMap<&str, Option<usize>> {
+fn once<K: Eq + Hash>(keys: &[Option<K>]) -> HashMap<&K, Option<usize>> {
     let mut places = HashMap::new();
     for (index, key) in keys.iter().enumerate() {
         if let Some(key) = key {
-            places.entry(key.as_str()).and_modify(|place| *place = None).or_insert(Some(index));
+            places.entry(key).and_modify(|place| *place = None).or_insert(Some(index));
         }
     }
     places
@@ -236,6 +252,8 @@ mod tests {
         let ring = json!([{"children": [1]}, {"children": [2]}, {"children": [0, 2, 9]}, {"children": [0]}]);
         let rig = rig(ring);
         assert_eq!(rig.order.len(), 4);
-        assert_eq!(rig.path(2, str::to_owned), "#1/#0/#0");
+        let steps = [2, 1, 0].map(|node| rig.step(node, str::to_owned));
+        assert_eq!(steps, ["#0", "#0", "#1"]);
+        assert_eq!((rig.joints[2].parent, rig.joints[1].parent), (Some(1), Some(0)));
     }
 }

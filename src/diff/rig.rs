@@ -73,20 +73,13 @@ impl Rig {
         self.joints[node].name.clone().unwrap_or_else(|| format!("node {node}"))
     }
 
-    /// The names from the top down to a node; of those without one, which child it is.
-    pub(super) fn path(&self, node: usize, renamed: impl Fn(&str) -> String) -> String {
-        let mut steps = Vec::new();
-        let mut next = Some(node);
-        while let Some(index) = next {
-            let joint = &self.joints[index];
-            steps.push(match &joint.name {
-                Some(name) => renamed(name),
-                None => format!("#{}", joint.place),
-            });
-            next = joint.parent;
+    /// The last step of the path from the top down to a node: its name, or which child it
+    /// is where it has none.
+    pub(super) fn step(&self, node: usize, renamed: impl Fn(&str) -> String) -> String {
+        match &self.joints[node].name {
+            Some(name) => renamed(name),
+            None => format!("#{}", self.joints[node].place),
         }
-        steps.reverse();
-        steps.join("/")
     }
 }
 

@@ -10,6 +10,8 @@ use crate::asset::{self, Asset};
 
 /// Less than this share of pixels drawn is nothing to be seen.
 pub const LEAST_VISIBLE: f64 = 0.001;
+/// Clips that are looked at; a small file can list one very often.
+const MOST_CLIPS: usize = 64;
 /// Where in a clip to look whether anything moves.
 const MOMENTS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 
@@ -19,7 +21,7 @@ const MOMENTS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 pub struct Look {
     /// The largest share of pixels, 0 to 1, drawn in any picture looked at.
     pub covered: f64,
-    /// A finding for each clip, in the file's order.
+    /// A finding for each clip that was looked at, in the file's order: the first 64.
     pub clips: Vec<ClipLook>,
     /// What the pictures were drawn with.
     pub renderer: String,
@@ -48,11 +50,11 @@ pub struct ClipLook {
 }
 
 impl Session {
-    /// Looks at the file half way through its first clip, and at all clips.
+    /// Looks at the file half way through its first clip, and at its clips.
     pub fn look(&mut self, asset: &mut Asset, size: (u32, u32)) -> Result<Look, Error> {
         let mut covered = self.covered_close_up(asset, size)?;
         let mut clips = Vec::new();
-        for clip in 0..self.clips.len() {
+        for clip in 0..self.clips.len().min(MOST_CLIPS) {
             clips.push(ClipLook {
                 animation: self.clips[clip].animation,
                 name: self.clips[clip].name.clone(),
@@ -62,7 +64,11 @@ impl Session {
                 },
             });
         }
-        Ok(Look { covered, clips, renderer: self.renderer().to_owned(), notes: self.notes().to_vec() })
+        let mut notes = self.notes().to_vec();
+        if self.clips.len() > MOST_CLIPS {
+            notes.push(format!("the first {MOST_CLIPS} of {} clips were looked at", self.clips.len()));
+        }
+        Ok(Look { covered, clips, renderer: self.renderer().to_owned(), notes })
     }
 
     /// Seen from where the pose alone fills the view, as in a view that holds a

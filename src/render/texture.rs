@@ -7,13 +7,16 @@ use gltf::json;
 use gltf::json::material::AlphaMode;
 use gltf::json::texture::{MagFilter, WrappingMode};
 use gltf::json::validation::Checked;
+use image::{DynamicImage, ImageDecoder};
 use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Textures larger than this a side start with a smaller copy.
 const MOST_TEXELS: u32 = 4096;
-/// An image that would need more memory than this is left out.
-const MOST_BYTES: u64 = 1 << 30;
+/// An image may unpack to so many bytes, four a pixel,
+const UNPACKED: u64 = 1 << 26;
+/// or to so many for each byte it is stored in. A few bytes can claim any size.
+const UNPACKED_FOR_EACH: u64 = 32;
 
 /// The textures in use, each image decoded once.
 #[derive(Debug, Default)]
@@ -111,12 +114,20 @@ fn wrap(mode: Checked<WrappingMode>) -> Wrap {
 fn decode(asset: &mut Asset, index: usize) -> Result<Vec<Level>, Error> {
     let broken = |e: &dyn std::fmt::Display| Error::data(format!("/images/{index}"), e.to_string());
     let bytes = asset.image(index)?;
+    let most = UNPACKED.max(UNPACKED_FOR_EACH * bytes.len() as u64);
     let mut reader =
         image::ImageReader::new(std::io::Cursor::new(bytes)).with_guessed_format().map_err(|e| broken(&e))?;
     let mut limits = image::Limits::default();
-    limits.max_alloc = Some(MOST_BYTES);
+    limits.max_alloc = Some(4 * most);
     reader.limits(limits);
-    let pixels = reader.decode().map_err(|e| broken(&e))?.into_rgba8();
+    let decoder = reader.into_decoder().map_err(|e| broken(&e))?;
+    let (width, height) = decoder.dimensions();
+    if 4 * u64::from(width) * u64::from(height) > most {
+        return Err(broken(&format!(
+            "has {width} × {height} pixels, too many for the bytes it is stored in"
+        )));
+    }
+    let pixels = DynamicImage::from_decoder(decoder).map_err(|e| broken(&e))?.into_rgba8();
     if pixels.is_empty() {
         return Err(broken(&"has no pixels"));
     }

@@ -4,6 +4,7 @@ mod clips;
 mod reference;
 mod scipy;
 mod support;
+mod unsafe_code;
 
 #[cfg(feature = "cli")]
 mod check;
@@ -19,12 +20,20 @@ mod convert_outputs;
 mod diff;
 #[cfg(feature = "cli")]
 mod example;
+#[cfg(all(feature = "cli", feature = "render", feature = "plot", target_os = "linux"))]
+mod faults;
+#[cfg(all(feature = "cli", feature = "render", feature = "plot", target_os = "linux"))]
+mod faults_inputs;
+#[cfg(all(feature = "cli", feature = "render", feature = "plot", target_os = "linux"))]
+mod faults_killed;
 #[cfg(feature = "cli")]
 mod fewest;
 #[cfg(all(feature = "cli", feature = "plot", feature = "render"))]
 mod gallery;
 #[cfg(feature = "cli")]
 mod help;
+#[cfg(all(feature = "cli", feature = "render", feature = "plot", target_os = "linux"))]
+mod hostile;
 #[cfg(feature = "cli")]
 mod inspect;
 #[cfg(feature = "cli")]

@@ -2,6 +2,8 @@
 
 #[cfg(feature = "cli")]
 pub(crate) mod altered;
+#[cfg(all(feature = "cli", feature = "render", feature = "plot", target_os = "linux"))]
+pub(crate) mod confined;
 #[cfg(all(feature = "cli", feature = "plot"))]
 pub(crate) mod drawn;
 #[cfg(feature = "cli")]
@@ -12,6 +14,8 @@ pub(crate) mod schema;
 pub(crate) mod stage;
 #[cfg(feature = "cli")]
 pub(crate) mod tool;
+#[cfg(all(feature = "cli", feature = "render", feature = "plot", target_os = "linux"))]
+pub(crate) mod writers;
 
 use dat2glb::clip::Clip;
 use dat2glb::read;
