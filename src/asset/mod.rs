@@ -18,6 +18,7 @@ pub(crate) mod tests;
 mod uri;
 
 use std::io::{self, Read, Seek, SeekFrom};
+use std::ops::Range;
 
 use gltf::json::Root;
 
@@ -153,6 +154,16 @@ impl Asset {
     /// How the file is put together.
     pub fn container(&self) -> &Container {
         &self.container
+    }
+
+    /// Bytes of the file itself, as far as it has such.
+    pub(crate) fn main_bytes(&mut self, bytes: Range<u64>) -> Result<Vec<u8>, Error> {
+        let length = self.container.length();
+        let (start, end) = (bytes.start.min(length), bytes.end.min(length));
+        let mut out = vec![0; end.saturating_sub(start) as usize];
+        let read = self.main.seek(SeekFrom::Start(start)).and_then(|_| self.main.read_exact(&mut out));
+        read.map_err(|error| Error::data("", error.to_string()))?;
+        Ok(out)
     }
 
     /// How many bytes a buffer really has, whatever its `byteLength` says.

@@ -12,16 +12,16 @@ use dat2glb::check::{self, Report, Severity};
 use dat2glb::rewrite::{self, ClipFacts, Facts, Reduced, Strayed};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::fs;
-use std::io::{self, Cursor, Read, Write};
+use std::fs::{self, File};
+use std::io::{self, Cursor, Read, Seek, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 pub(super) fn run(options: &Reduce) -> Result<Exit, Failure> {
     let started = Instant::now();
     let (input, output) = (&options.input, &options.output);
-    let main = bytes(input)?;
-    let mut asset = opened(&main, input)?;
+    let (main, mut asset) = opened(input)?;
     let beside = referred_to(&asset);
     check_ending(output, &asset)?;
     let wanted = rewrite::Options {
@@ -33,7 +33,7 @@ pub(super) fn run(options: &Reduce) -> Result<Exit, Failure> {
         on_curve: options.on_curve,
     };
     let uri = |hash: &str| percent_encoded(&bin_file_name(output, hash));
-    let reduced = rewrite::reduce(&main, &mut asset, &wanted, uri).map_err(|error| match error {
+    let reduced = rewrite::reduce(&mut asset, &wanted, uri).map_err(|error| match error {
         rewrite::Error::Tolerance { .. } => Failure::usage(format!("--tolerance: {error}")),
         other => Failure::refused(format!("{}: {other}", display_name(input))),
     })?;
@@ -41,8 +41,10 @@ pub(super) fn run(options: &Reduce) -> Result<Exit, Failure> {
     let read: Vec<PathBuf> = std::iter::once(input.clone())
         .chain(beside.iter().map(|(_, uri)| input.with_file_name(uri)))
         .collect();
-    let outputs = begun(output, &read, &reduced)?;
-    checked(output, &mut asset, &reduced)?;
+    let outputs = begun(output, &read, &main, &reduced)?;
+    if reduced.main.is_some() {
+        checked(output, outputs.last(), &mut asset, &reduced)?;
+    }
     files::unchanged()?;
     let turn = (!reduced.files.is_empty()).then(|| Turn::at(output));
     Output::commit_all(outputs)?;
@@ -55,19 +57,67 @@ pub(super) fn run(options: &Reduce) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-fn bytes(input: &Path) -> Result<Vec<u8>, Failure> {
-    let mut bytes = Vec::new();
-    let read = match is_standard(input) {
-        true => io::stdin().read_to_end(&mut bytes),
-        false => files::open(input)?.read_to_end(&mut bytes),
-    };
-    read.map_err(|error| Failure::refused(format!("{}: cannot be read: {error}", display_name(input))))?;
-    Ok(bytes)
+/// Where the input is read from again.
+enum Main {
+    File(File),
+    /// What can be read only once.
+    Memory(Shared),
 }
 
-fn opened(main: &[u8], input: &Path) -> Result<Asset, Failure> {
-    Asset::open(Box::new(Cursor::new(main.to_vec())), Box::new(Beside::the(input)))
-        .map_err(|error| files::cannot_read(input, &error))
+/// Bytes in memory once.
+#[derive(Clone)]
+struct Shared(Arc<Vec<u8>>);
+
+impl AsRef<[u8]> for Shared {
+    fn as_ref(&self) -> &[u8] {
+        &self.0
+    }
+}
+
+impl Main {
+    fn open(input: &Path) -> Result<Main, Failure> {
+        let mut bytes = Vec::new();
+        let read = if is_standard(input) {
+            io::stdin().read_to_end(&mut bytes)
+        } else {
+            let mut file = files::open(input)?;
+            if file.metadata().is_ok_and(|metadata| metadata.is_file()) {
+                return Ok(Main::File(file));
+            }
+            file.read_to_end(&mut bytes)
+        };
+        read.map_err(|error| unread(input, &error))?;
+        Ok(Main::Memory(Shared(Arc::new(bytes))))
+    }
+
+    fn source(&self) -> io::Result<Box<dyn Source>> {
+        Ok(match self {
+            Main::File(file) => Box::new(file.try_clone()?),
+            Main::Memory(bytes) => Box::new(Cursor::new(bytes.clone())),
+        })
+    }
+
+    fn copy(&self, mut to: &File) -> io::Result<()> {
+        match self {
+            Main::File(file) => {
+                let mut file = file.try_clone()?;
+                file.rewind()?;
+                io::copy(&mut file, &mut to).map(drop)
+            }
+            Main::Memory(bytes) => to.write_all(bytes.as_ref()),
+        }
+    }
+}
+
+fn unread(input: &Path, error: &io::Error) -> Failure {
+    Failure::refused(format!("{}: cannot be read: {error}", display_name(input)))
+}
+
+fn opened(input: &Path) -> Result<(Main, Asset), Failure> {
+    let main = Main::open(input)?;
+    let source = main.source().map_err(|error| unread(input, &error))?;
+    let asset = Asset::open(source, Box::new(Beside::the(input)));
+    Ok((main, asset.map_err(|error| files::cannot_read(input, &error))?))
 }
 
 /// Other files that the file names, with the index of the buffer or none for an image.
@@ -148,20 +198,20 @@ fn content(path: &Path) -> Option<Vec<u8>> {
 }
 
 /// Everything written, with names yet to come; what is referred to comes first.
-fn begun(output: &Path, read: &[PathBuf], reduced: &Reduced) -> Result<Vec<Output>, Failure> {
-    let write = |file: &Output, bytes: &[u8]| {
-        let failed =
-            |error| Failure::environment(format!("{}: cannot be written: {error}", output.display()));
-        file.file().write_all(bytes).map_err(failed)
-    };
+fn begun(output: &Path, read: &[PathBuf], input: &Main, reduced: &Reduced) -> Result<Vec<Output>, Failure> {
+    let failed = |error| Failure::environment(format!("{}: cannot be written: {error}", output.display()));
     let mut outputs = Vec::new();
     for file in &reduced.files {
         let bin = Output::create(&output.with_file_name(bin_file_name(output, &file.hash)), read)?;
-        write(&bin, &file.bytes)?;
+        bin.file().write_all(&file.bytes).map_err(failed)?;
         outputs.push(bin);
     }
     let main = if is_standard(output) { Output::standard_output()? } else { Output::create(output, read)? };
-    write(&main, &reduced.main)?;
+    match &reduced.main {
+        Some(bytes) => main.file().write_all(bytes),
+        None => input.copy(main.file()),
+    }
+    .map_err(failed)?;
     outputs.push(main);
     Ok(outputs)
 }
@@ -183,21 +233,30 @@ impl Resolve for Written {
 
 /// Loads back what will be written and refuses it if it has errors that the input had
 /// not, or plays otherwise than it should.
-fn checked(output: &Path, input: &mut Asset, reduced: &Reduced) -> Result<(), Failure> {
+fn checked(
+    output: &Path,
+    written: Option<&Output>,
+    input: &mut Asset,
+    reduced: &Reduced,
+) -> Result<(), Failure> {
     let broken = |reason: String| {
         let message = format!("{}: the output failed its check and was not kept\n{reason}", output.display());
         Failure::new(Exit::Failed, message)
     };
     let files = reduced.files.iter().map(|file| (bin_file_name(output, &file.hash), file.bytes.clone()));
     let resolve = Written { files: files.collect(), beside: Beside::the(output) };
-    let main = Box::new(Cursor::new(reduced.main.clone()));
-    let mut asset = Asset::open(main, Box::new(resolve)).map_err(|error| broken(error.to_string()))?;
-    let (before, after): (Report, Report) = (check::asset(input), check::asset(&mut asset));
-    let is_new = |finding: &&check::Finding| {
-        let code = finding.code;
-        finding.severity == Severity::Error && after.count_of(code) > before.count_of(code)
+    let file = written.map(|output| output.file().try_clone()).transpose();
+    let file = file.map_err(|error| broken(error.to_string()))?.ok_or_else(|| broken(String::new()))?;
+    let opened = Asset::open(Box::new(file), Box::new(resolve));
+    let mut asset = opened.map_err(|error| broken(error.to_string()))?;
+    let after = check::asset(&mut asset);
+    let errors = |report: &Report| -> Vec<check::Code> {
+        let errors = report.findings().iter().filter(|finding| finding.severity == Severity::Error);
+        errors.map(|finding| finding.code).collect()
     };
-    if after.findings().iter().any(|finding| is_new(&finding)) {
+    // The input's are needed only where there are some.
+    let before = if errors(&after).is_empty() { Report::default() } else { check::asset(input) };
+    if errors(&after).into_iter().any(|code| after.count_of(code) > before.count_of(code)) {
         return Err(broken(after.text(&output.display().to_string())));
     }
     let played = rewrite::strayed(input, &mut asset).map_err(|error| broken(error.to_string()))?;

@@ -8,6 +8,7 @@
 
 mod cubic;
 mod curve;
+mod dense;
 mod proof;
 mod reach;
 mod search;
@@ -19,6 +20,7 @@ mod tests;
 pub(crate) use cubic::Hermite;
 pub use cubic::{CubicKeys, Flat, cubic_numbers, cubic_rotation};
 pub use curve::{Attitude, Curve, Travelling, Turning};
+pub(crate) use dense::{Asked, Ends, Near, fewer};
 pub use value::{Numbers, OtherBlend, Step, Value};
 
 use crate::math::Quat;

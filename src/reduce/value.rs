@@ -109,7 +109,8 @@ impl Value for Quat {
     }
 
     fn continuous(stored: [f32; 4], before: [f32; 4]) -> [f32; 4] {
-        let dot: f32 = stored.iter().zip(before).map(|(a, b)| a * b).sum();
+        // Of float32 numbers the products are exact: half a turn stays the same half.
+        let dot: f64 = stored.iter().zip(before).map(|(&a, b)| f64::from(a) * f64::from(b)).sum();
         if dot < 0.0 { stored.map(|x| -x) } else { stored }
     }
 

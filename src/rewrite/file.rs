@@ -11,13 +11,16 @@ use crate::asset::Asset;
 use crate::asset::container::{BIN, Container, JSON, MAGIC};
 use crate::asset::play::{Interpolation, Property};
 use gltf::json::validation::Checked;
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::mem;
+use std::ops::Range;
 
 /// A reduced file.
 #[derive(Clone, Debug)]
 pub struct Reduced {
-    /// The bytes of the .glb or .gltf; those of the input where nothing can be saved.
-    pub main: Vec<u8>,
+    /// The bytes of the .glb or .gltf; none where nothing can be saved.
+    pub main: Option<Vec<u8>>,
     /// The new files beside it.
     pub files: Vec<External>,
     /// What became of it.
@@ -37,29 +40,24 @@ pub struct External {
 
 /// Writes the changes, unless that would not make the file smaller.
 pub(super) fn write(
-    main: &[u8],
     asset: &mut Asset,
     fixed: &Fixed,
     changes: Vec<Change>,
     uri: impl FnMut(&str) -> String,
 ) -> Result<Reduced, Error> {
-    let facts = |changes: &[Change], before: u64, after: u64| Facts {
-        clips: clips(asset, changes),
-        bytes_before: before,
-        bytes_after: after,
-    };
-    let unchanged = Facts { ..facts(&[], main.len() as u64, main.len() as u64) };
-    let changed_facts = facts(&changes, 0, 0);
-    let unchanged = Reduced { main: main.to_vec(), files: Vec::new(), facts: unchanged };
+    let length = asset.container().length();
+    let unchanged = Facts { clips: clips(asset, &[]), bytes_before: length, bytes_after: length };
+    let unchanged = Reduced { main: None, files: Vec::new(), facts: unchanged };
     if changes.is_empty() {
         return Ok(unchanged);
     }
-    let written = Writing::new(asset, fixed, &changes).finish(main, asset, fixed, uri)?;
+    let clips = clips(asset, &changes);
+    let written = Writing::new(asset, fixed, changes).finish(asset, fixed, uri)?;
     if written.after >= written.before {
         return Ok(unchanged);
     }
-    let facts = Facts { bytes_before: written.before, bytes_after: written.after, ..changed_facts };
-    Ok(Reduced { main: written.main, files: written.files, facts })
+    let facts = Facts { clips, bytes_before: written.before, bytes_after: written.after };
+    Ok(Reduced { main: Some(written.main), files: written.files, facts })
 }
 
 fn clips(asset: &Asset, changes: &[Change]) -> Vec<ClipFacts> {
@@ -71,10 +69,10 @@ fn clips(asset: &Asset, changes: &[Change]) -> Vec<ClipFacts> {
         let name = animation.name.clone();
         clips.push(ClipFacts { name, keys_before: keys, keys_after: keys, deviation: Strayed::default() });
     }
-    for Change { track, found } in changes {
-        let clip: &mut ClipFacts = &mut clips[track.animation];
-        clip.keys_after = clip.keys_after + found.times.len() - track.times.len();
-        clip.deviation.note(track.property, found.deviation);
+    for Change { sampler, found } in changes {
+        let clip: &mut ClipFacts = &mut clips[sampler.animation];
+        clip.keys_after = clip.keys_after + found.times.len() - sampler.keys;
+        clip.deviation.note(sampler.property, found.deviation);
     }
     clips
 }
@@ -147,14 +145,14 @@ impl Content {
         )
     }
 
-    /// What makes two accessors one.
-    fn identity(&self) -> Identity {
-        (self.times, self.kind, self.stored.component.as_gl_enum(), self.bytes.clone())
+    /// What two accessors that are one have in common, before their bytes are compared.
+    fn kind(&self) -> Kind {
+        (self.times, self.kind, self.stored.component.as_gl_enum(), self.bytes.len())
     }
 }
 
-/// Use, type, component type and bytes.
-type Identity = (bool, &'static str, u32, Vec<u8>);
+/// Use, type, component type and length.
+type Kind = (bool, &'static str, u32, usize);
 
 impl Stored {
     /// A number as it is stored, as JSON.
@@ -189,7 +187,10 @@ struct Writing {
     samplers: Vec<Sampler>,
     replaced: BTreeSet<usize>,
     home: usize,
-    same: HashMap<Identity, usize>,
+    /// Accessors by what they hold.
+    alike: HashMap<Kind, Vec<usize>>,
+    /// The number of the first new accessor.
+    next: usize,
 }
 
 struct Written {
@@ -200,9 +201,9 @@ struct Written {
 }
 
 impl Writing {
-    fn new(asset: &Asset, fixed: &Fixed, changes: &[Change]) -> Writing {
-        let changed: BTreeSet<(usize, usize)> =
-            changes.iter().map(|change| (change.track.animation, change.track.sampler)).collect();
+    fn new(asset: &Asset, fixed: &Fixed, changes: Vec<Change>) -> Writing {
+        let samplers = || changes.iter().map(|change| change.sampler);
+        let changed: BTreeSet<(usize, usize)> = samplers().map(|s| (s.animation, s.sampler)).collect();
         let mut kept = fixed.accessors.clone();
         for (a, animation) in asset.root().animations.iter().enumerate() {
             for (s, sampler) in animation.samplers.iter().enumerate() {
@@ -211,27 +212,27 @@ impl Writing {
                 }
             }
         }
-        let used = changes.iter().flat_map(|change| [change.track.input, change.track.output]);
-        let home = changes.first().map_or(0, |change| buffer_of(asset, change.track.output));
+        let used = samplers().flat_map(|sampler| [sampler.input, sampler.output]);
+        let home = samplers().next().map_or(0, |sampler| buffer_of(asset, sampler.output));
         let mut writing = Writing {
             old: BTreeMap::new(),
             new: Vec::new(),
             samplers: Vec::new(),
             replaced: used.filter(|accessor| !kept.contains(accessor)).collect(),
             home,
-            same: HashMap::new(),
+            alike: HashMap::new(),
+            next: asset.root().accessors.len(),
         };
-        let next = asset.root().accessors.len();
-        for Change { track, found } in changes {
-            let (kind, components) = match track.property {
+        for Change { sampler, found } in changes {
+            let (kind, components) = match sampler.property {
                 Property::Rotation => ("VEC4", 4),
                 Property::Translation | Property::Scale => ("VEC3", 3),
                 Property::MorphTargetWeights => ("SCALAR", 1),
             };
             let values = Content::new(kind, components, found.stored, &found.values);
-            let input = writing.place(track.input, Content::times(&found.times), next);
-            let output = writing.place(track.output, values, next);
-            let (animation, sampler) = (track.animation, track.sampler);
+            let input = writing.place(sampler.input, Content::times(&found.times));
+            let output = writing.place(sampler.output, values);
+            let (animation, sampler) = (sampler.animation, sampler.sampler);
             let interpolation = found.interpolation;
             writing.samplers.push(Sampler { animation, sampler, input, output, interpolation });
         }
@@ -240,43 +241,49 @@ impl Writing {
 
     /// The accessor of some content: the one that held the old, one that holds the same,
     /// or a new one.
-    fn place(&mut self, slot: usize, content: Content, next: usize) -> usize {
-        let key = content.identity();
+    fn place(&mut self, slot: usize, content: Content) -> usize {
+        let kind = content.kind();
         if self.replaced.contains(&slot) && !self.old.contains_key(&slot) {
-            self.same.entry(key).or_insert(slot);
+            self.alike.entry(kind).or_default().push(slot);
             self.old.insert(slot, content);
             return slot;
         }
-        let new = next + self.new.len();
-        let index = *self.same.entry(key).or_insert(new);
-        if index == new {
-            self.new.push(content);
+        let alike = self.alike.get(&kind).into_iter().flatten();
+        if let Some(&same) = alike.into_iter().find(|&&index| self.bytes(index) == content.bytes) {
+            return same;
         }
-        index
+        let new = self.next + self.new.len();
+        self.alike.entry(kind).or_default().push(new);
+        self.new.push(content);
+        new
+    }
+
+    /// What an accessor holds.
+    fn bytes(&self, index: usize) -> &[u8] {
+        let new = index.checked_sub(self.next).and_then(|new| self.new.get(new));
+        new.or_else(|| self.old.get(&index)).map_or(&[], |content| &content.bytes)
     }
 
     fn finish(
-        self,
-        main: &[u8],
+        mut self,
         asset: &mut Asset,
         fixed: &Fixed,
         uri: impl FnMut(&str) -> String,
     ) -> Result<Written, Error> {
-        let next = asset.root().accessors.len();
         let mut buffers = Buffers::new(asset, fixed, &self.replaced, self.home);
-        for (&slot, content) in &self.old {
-            buffers.replace(slot, content.bytes.clone());
+        for (&slot, content) in &mut self.old {
+            buffers.replace(slot, mem::take(&mut content.bytes));
         }
-        for (index, content) in (next..).zip(&self.new) {
-            buffers.append(index, &content.bytes);
+        for (index, content) in (self.next..).zip(&mut self.new) {
+            buffers.append(index, &mem::take(&mut content.bytes));
         }
         let settled = buffers.settle();
         let bytes = Bytes::new(asset, &settled, uri)?;
         let text = std::str::from_utf8(asset.json()).map_err(|_| wrong("the text"))?;
         let edits = Document { text, asset, settled: &settled, writing: &self, bytes: &bytes }.edits()?;
         let text = edits.apply(text).ok_or_else(|| wrong("/"))?;
-        let before = main.len() as u64 + bytes.before;
-        let main = contained(main, asset, &text, bytes.bin)?;
+        let before = asset.container().length() + bytes.before;
+        let main = contained(asset, &text, bytes.bin)?;
         let after = main.len() as u64 + bytes.files.iter().map(|file| file.bytes.len() as u64).sum::<u64>();
         Ok(Written { main, files: bytes.files, before, after })
     }
@@ -311,20 +318,24 @@ impl Bytes {
         let (lengths, files) = (BTreeMap::new(), Vec::new());
         let mut all = Bytes { lengths, home: None, bin: None, files, before: 0 };
         for buffer in settled.buffers() {
-            let mut old = vec![0; asset.buffer_length(buffer)? as usize];
-            asset.read_at(buffer, 0, &mut old)?;
-            let (used, rest) = match asset.root().buffers.get(buffer) {
-                Some(stored) => old.split_at(old.len().min(stored.byte_length.0 as usize)),
-                None => (&old[..], &[][..]),
+            let old = asset.buffer_length(buffer)?;
+            let stored = asset.root().buffers.get(buffer);
+            let used = stored.map_or(old, |stored| stored.byte_length.0.min(old));
+            let has_uri = stored.is_some_and(|stored| stored.uri.is_some());
+            let mut read = |range: Range<u64>, out: &mut Vec<u8>| {
+                let before = out.len();
+                out.resize(before + range.end.saturating_sub(range.start) as usize, 0);
+                asset.read_at(buffer, range.start, &mut out[before..])
             };
-            let (mut new, home) = settled.bytes(buffer, used).ok_or_else(|| wrong("/bufferViews"))?;
-            all.home = all.home.or(home);
+            let (mut new, home) =
+                settled.bytes(buffer, used, &mut read)?.ok_or_else(|| wrong("/bufferViews"))?;
             let length = new.len() as u64;
-            let stated = asset.root().buffers.get(buffer).and_then(|stored| stored.uri.as_deref());
             // Padding is made anew.
-            if stated.is_some() || rest.len() > 3 {
-                new.extend(rest);
+            if has_uri || old - used > 3 {
+                read(used..old, &mut new)?;
             }
+            all.home = all.home.or(home);
+            let stated = asset.root().buffers.get(buffer).and_then(|stored| stored.uri.as_deref());
             let uri = match stated {
                 None => {
                     all.bin = Some(new);
@@ -332,7 +343,7 @@ impl Bytes {
                 }
                 Some(data) if data.starts_with("data:") => Some(data_uri(data, &new)),
                 Some(_) => {
-                    all.before += old.len() as u64;
+                    all.before += old;
                     let hash = blake3::hash(&new).to_hex()[..16].to_owned();
                     let uri = uri(&hash);
                     all.files.push(External { buffer, hash, bytes: new });
@@ -471,39 +482,46 @@ impl Document<'_> {
 }
 
 /// The JSON in the container that it came in, with the other chunks as they were.
-fn contained(main: &[u8], asset: &Asset, text: &str, bin: Option<Vec<u8>>) -> Result<Vec<u8>, Error> {
-    let glb = match asset.container() {
+fn contained(asset: &mut Asset, text: &str, bin: Option<Vec<u8>>) -> Result<Vec<u8>, Error> {
+    let glb = match asset.container().clone() {
         Container::Glb(glb) => glb,
         Container::Text { .. } => {
             let mark = if asset.json_form().byte_order_mark { 3 } else { 0 };
-            let after = main.get(mark + asset.json().len()..).unwrap_or_default();
-            return Ok([main.get(..mark).unwrap_or_default(), text.as_bytes(), after].concat());
+            let after = mark + asset.json().len() as u64;
+            let before = asset.main_bytes(0..mark)?;
+            return Ok([&before, text.as_bytes(), &asset.main_bytes(after..u64::MAX)?].concat());
         }
     };
     let mut json = text.trim_end().as_bytes().to_vec();
     json.resize(json.len().next_multiple_of(4), b' ');
-    let bin = bin.map(|mut bin| {
-        bin.resize(bin.len().next_multiple_of(4), 0);
-        bin
-    });
-    let (mut chunks, mut is_first_bin) = (Vec::new(), true);
+    let rest = asset.main_bytes(glb.end..u64::MAX)?;
+    let mut file = Vec::with_capacity(json.len() + bin.as_ref().map_or(0, Vec::len) + rest.len() + 64);
+    file.extend([MAGIC, 2u32.to_le_bytes(), [0; 4]].concat());
+    let mut is_first_bin = true;
     for chunk in &glb.chunks {
-        let data = match (chunk.kind, &bin) {
-            (JSON, _) if chunks.is_empty() => &json[..],
-            (BIN, Some(bin)) if is_first_bin => bin,
-            _ => main.get(chunk.start as usize..(chunk.start + chunk.length) as usize).unwrap_or_default(),
+        let (data, padding) = match (chunk.kind, &bin) {
+            (JSON, _) if file.len() == 12 => (Cow::Borrowed(&json), 0),
+            (BIN, Some(bin)) if is_first_bin => {
+                (Cow::Borrowed(bin), bin.len().next_multiple_of(4) - bin.len())
+            }
+            _ => (Cow::Owned(asset.main_bytes(chunk.start..chunk.start + chunk.length)?), 0),
         };
         is_first_bin &= chunk.kind != BIN;
-        let length = u32::try_from(data.len()).map_err(|_| Error::TooLarge(data.len() as u64))?;
-        chunks.extend(length.to_le_bytes());
-        chunks.extend(chunk.kind);
-        chunks.extend(data);
+        file.extend(word(data.len() + padding)?);
+        file.extend(chunk.kind);
+        file.extend_from_slice(&data);
+        file.resize(file.len() + padding, 0);
     }
-    let rest = main.get(glb.end as usize..).unwrap_or_default();
     let counted = if glb.declared >= glb.length { rest.len() } else { 0 };
-    let length = (12 + chunks.len() + counted) as u64;
-    let word = u32::try_from(length).map_err(|_| Error::TooLarge(length))?;
-    Ok([&MAGIC[..], &2u32.to_le_bytes(), &word.to_le_bytes(), &chunks, rest].concat())
+    let length = word(file.len() + counted)?;
+    file[8..12].copy_from_slice(&length);
+    file.extend(rest);
+    Ok(file)
+}
+
+/// A length as a .glb has it.
+fn word(length: usize) -> Result<[u8; 4], Error> {
+    u32::try_from(length).map(u32::to_le_bytes).map_err(|_| Error::TooLarge(length as u64))
 }
 
 /// A data: URI of the same media type, in base64 (RFC 4648).

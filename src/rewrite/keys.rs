@@ -2,8 +2,8 @@
 
 use super::Options;
 use super::curves::{Cubics, Normalised, Slerps};
-use super::subset;
 use super::track::{Stored, Track};
+use super::{many, subset};
 use crate::asset::play::{Interpolation, Property};
 use crate::reduce;
 
@@ -67,7 +67,7 @@ pub(super) fn fewest(track: &Track, options: &Options) -> Option<Found> {
         return Some(best);
     }
     let exact = Allowed { tolerance: exact(track.property), ..allowed };
-    let best = subset::own_keys(track, &exact);
+    let best = own_keys(track, &exact);
     (best.times.len() < track.times.len()).then_some(best)
 }
 
@@ -86,7 +86,14 @@ fn exact(property: Property) -> Option<f64> {
 }
 
 fn best(track: &Track, allowed: &Allowed) -> Found {
-    let own = subset::own_keys(track, allowed);
+    // Of many keys that are float32 as they are, some of them are more than new ones.
+    if many::applies(track, allowed) && track.stored == Stored::FLOATS {
+        let found = subset::resting(track, allowed).or_else(|| many::new_keys(track, allowed));
+        if let Some(found) = found {
+            return found;
+        }
+    }
+    let own = own_keys(track, allowed);
     let new = (own.times.len() > 2).then(|| new_keys(track, allowed)).flatten();
     match new {
         Some(new) if new.bytes() < own.bytes() && new.times.len() < track.times.len() => new,
@@ -94,10 +101,23 @@ fn best(track: &Track, allowed: &Allowed) -> Found {
     }
 }
 
+/// Some of a track's own keys.
+fn own_keys(track: &Track, allowed: &Allowed) -> Found {
+    let many = many::applies(track, allowed);
+    let walked = || if many { many::own_keys(track, allowed) } else { None };
+    let found = subset::resting(track, allowed).or_else(walked);
+    found.unwrap_or_else(|| subset::own_keys(track, allowed))
+}
+
 /// New keys to be played LINEAR.
 fn new_keys(track: &Track, allowed: &Allowed) -> Option<Found> {
     if track.interpolation == Interpolation::Step {
         return None;
+    }
+    if many::applies(track, allowed)
+        && let Some(found) = many::new_keys(track, allowed)
+    {
+        return Some(found);
     }
     let options = reduce::Options {
         tolerance: allowed.tolerance?,

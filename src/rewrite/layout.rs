@@ -3,7 +3,7 @@
 //! multiple of four, its place.
 
 use super::refs::Fixed;
-use crate::asset::{Asset, Layout};
+use crate::asset::{Asset, Error, Layout};
 use gltf::json::validation::Checked;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -241,24 +241,30 @@ impl Settled {
         self.patches.keys().copied().chain(self.home.iter().map(|home| home.0)).collect()
     }
 
-    /// A buffer's new bytes, and the view at its end, if it has it.
-    pub(super) fn bytes(&self, buffer: usize, old: &[u8]) -> Option<(Vec<u8>, Option<NewView>)> {
-        let mut new = Vec::with_capacity(old.len());
-        let mut at = 0;
+    /// A buffer's new bytes, and the view at its end, if it has it. Of its `length` bytes
+    /// `read` appends some; none where a patch lies beyond them.
+    pub(super) fn bytes(
+        &self,
+        buffer: usize,
+        length: u64,
+        read: &mut impl FnMut(Range<u64>, &mut Vec<u8>) -> Result<(), Error>,
+    ) -> Result<Option<(Vec<u8>, Option<NewView>)>, Error> {
+        let (mut new, mut at) = (Vec::new(), 0);
         for patch in self.patches.get(&buffer).into_iter().flat_map(BTreeMap::values) {
-            let (start, end) =
-                (usize::try_from(patch.range.start).ok()?, usize::try_from(patch.range.end).ok()?);
-            new.extend(old.get(at..start)?);
-            new.extend(&patch.bytes);
-            at = end;
+            if patch.range.start < at || patch.range.end > length {
+                return Ok(None);
+            }
+            read(at..patch.range.start, &mut new)?;
+            new.extend_from_slice(&patch.bytes);
+            at = patch.range.end;
         }
-        new.extend(old.get(at..)?);
+        read(at..length, &mut new)?;
         let Some((_, home)) = self.home.as_ref().filter(|home| home.0 == buffer) else {
-            return Some((new, None));
+            return Ok(Some((new, None)));
         };
         new.resize(new.len().next_multiple_of(4), 0);
         let view = NewView { buffer, offset: new.len() as u64, length: home.len() as u64 };
-        new.extend(home);
-        Some((new, Some(view)))
+        new.extend_from_slice(home);
+        Ok(Some((new, Some(view))))
     }
 }

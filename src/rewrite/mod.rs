@@ -10,6 +10,7 @@ mod file;
 mod json;
 mod keys;
 mod layout;
+mod many;
 mod plan;
 mod refs;
 mod subset;
@@ -125,12 +126,11 @@ pub struct ClipFacts {
     pub deviation: Strayed,
 }
 
-/// Reduces a file. `main` is all of its bytes, `asset` the same opened; `uri` names a
-/// buffer's new file by sixteen digits of its content's hash.
+/// Reduces a file; `uri` names a buffer's new file by sixteen digits of its content's hash.
 ///
-/// Memory as much as the file and its animations take.
+/// Memory as much as the new file and its keys take, and two of its longest channels or
+/// 8 MB of shorter ones.
 pub fn reduce(
-    main: &[u8],
     asset: &mut Asset,
     options: &Options,
     uri: impl FnMut(&str) -> String,
@@ -140,20 +140,51 @@ pub fn reduce(
         return Err(Error::Tolerance { found: options.rotation, least });
     }
     let fixed = refs::fixed(asset)?;
-    let tracks = tracks(asset)?;
-    let found: Vec<_> = tracks.par_iter().map(|track| keys::fewest(track, options)).collect();
-    let changes = plan::changes(asset, &fixed, tracks, found);
-    file::write(main, asset, &fixed, changes, uri)
+    let found = found(asset, options)?;
+    let changes = plan::changes(asset, &fixed, found);
+    file::write(asset, &fixed, changes, uri)
 }
 
-/// All samplers that can be reduced.
-fn tracks(asset: &mut Asset) -> Result<Vec<track::Track>, Error> {
-    let samplers: Vec<usize> = asset.root().animations.iter().map(|a| a.samplers.len()).collect();
-    let mut tracks = Vec::new();
-    for (animation, count) in samplers.into_iter().enumerate() {
-        for sampler in 0..count {
-            tracks.extend(track::Track::read(asset, animation, sampler)?);
+/// Numbers of keys read at once, but for a longer track.
+const AT_ONCE: usize = 1 << 20;
+
+/// Fewer keys for all samplers that can be reduced and for which there are. Some are read
+/// while others are reduced.
+fn found(asset: &mut Asset, options: &Options) -> Result<Vec<plan::Change>, Error> {
+    let samplers = asset.root().animations.iter().enumerate();
+    let samplers = samplers.flat_map(|(a, animation)| (0..animation.samplers.len()).map(move |s| (a, s)));
+    let mut samplers = samplers.collect::<Vec<_>>().into_iter();
+    let mut all = Vec::new();
+    let mut tracks = read(asset, &mut samplers)?;
+    while !tracks.is_empty() {
+        let (found, next) = rayon::join(|| reduced(&tracks, options), || read(asset, &mut samplers));
+        all.extend(found);
+        tracks = next?;
+    }
+    Ok(all)
+}
+
+/// The next tracks; none after the last.
+fn read(
+    asset: &mut Asset,
+    samplers: &mut impl Iterator<Item = (usize, usize)>,
+) -> Result<Vec<track::Track>, Error> {
+    let (mut tracks, mut numbers) = (Vec::new(), 0);
+    while numbers < AT_ONCE
+        && let Some((animation, sampler)) = samplers.next()
+    {
+        if let Some(track) = track::Track::read(asset, animation, sampler)? {
+            numbers += track.times.len() + track.values.len();
+            tracks.push(track);
         }
     }
     Ok(tracks)
+}
+
+fn reduced(tracks: &[track::Track], options: &Options) -> Vec<plan::Change> {
+    let reduced = tracks.par_iter().map(|track| {
+        let found = keys::fewest(track, options)?;
+        Some(plan::Change { sampler: track.sampler, found })
+    });
+    reduced.flatten().collect()
 }

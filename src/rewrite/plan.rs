@@ -3,14 +3,14 @@
 
 use super::keys::Found;
 use super::refs::Fixed;
-use super::track::Track;
+use super::track::Sampler;
 use crate::asset::Asset;
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
-/// A track and its new keys.
+/// A sampler and its new keys.
 #[derive(Clone, Debug)]
 pub(super) struct Change {
-    pub(super) track: Track,
+    pub(super) sampler: Sampler,
     pub(super) found: Found,
 }
 
@@ -18,17 +18,10 @@ pub(super) struct Change {
 const ACCESSOR: i64 = 128;
 
 /// The changes that are worth it.
-pub(super) fn changes(
-    asset: &mut Asset,
-    fixed: &Fixed,
-    tracks: Vec<Track>,
-    found: Vec<Option<Found>>,
-) -> Vec<Change> {
-    let pairs = tracks.into_iter().zip(found);
-    let all: Vec<Change> = pairs.filter_map(|(track, found)| Some(Change { track, found: found? })).collect();
+pub(super) fn changes(asset: &mut Asset, fixed: &Fixed, all: Vec<Change>) -> Vec<Change> {
     let mut changes = worthwhile(asset, fixed, all);
     keep_durations(asset, &mut changes);
-    changes.retain(|change| change.found.times.len() < change.track.times.len());
+    changes.retain(|change| change.found.times.len() < change.sampler.keys);
     changes
 }
 
@@ -41,7 +34,7 @@ fn worthwhile(asset: &Asset, fixed: &Fixed, all: Vec<Change>) -> Vec<Change> {
     }
     let mut groups: BTreeMap<usize, Vec<Change>> = BTreeMap::new();
     for change in all {
-        groups.entry(change.track.input).or_default().push(change);
+        groups.entry(change.sampler.input).or_default().push(change);
     }
     let mut written = HashSet::new();
     let mut chosen = Vec::new();
@@ -58,7 +51,7 @@ fn worthwhile(asset: &Asset, fixed: &Fixed, all: Vec<Change>) -> Vec<Change> {
             }
         }
         let mut new = HashSet::new();
-        let times = rest.first().map_or(0, |change| 4 * change.track.times.len() as i64 + ACCESSOR);
+        let times = rest.first().map_or(0, |change| 4 * change.sampler.keys as i64 + ACCESSOR);
         let mut shared = |times: Vec<u32>| written.contains(&times) || !new.insert(times);
         let total: i64 = rest.iter().map(|change| saved(change, fixed, shared(bits(change)))).sum();
         if alone && total + times > 0 {
@@ -66,7 +59,7 @@ fn worthwhile(asset: &Asset, fixed: &Fixed, all: Vec<Change>) -> Vec<Change> {
             chosen.extend(rest);
         }
     }
-    chosen.sort_by_key(|change| (change.track.animation, change.track.sampler));
+    chosen.sort_by_key(|change| (change.sampler.animation, change.sampler.sampler));
     chosen
 }
 
@@ -78,12 +71,9 @@ fn bits(change: &Change) -> Vec<u32> {
 /// Bytes that a change saves if the old times stay; `shared` are new times that are
 /// written already.
 fn saved(change: &Change, fixed: &Fixed, shared: bool) -> i64 {
-    let Change { track, found } = change;
+    let Change { sampler, found } = change;
     let bytes = |numbers: usize, size: usize| (numbers * size) as i64;
-    let old = match fixed.accessors.contains(&track.output) {
-        true => 0,
-        false => bytes(track.values.len(), track.stored.component.size()),
-    };
+    let old = if fixed.accessors.contains(&sampler.output) { 0 } else { sampler.bytes as i64 };
     let times = if shared { 0 } else { bytes(found.times.len(), 4) + ACCESSOR };
     old - bytes(found.values.len(), found.stored.component.size()) - times
 }
@@ -93,8 +83,8 @@ fn keep_durations(asset: &mut Asset, changes: &mut [Change]) {
     for clip in asset.clips() {
         let changed: BTreeSet<usize> = changes
             .iter()
-            .filter(|change| change.track.animation == clip.animation)
-            .map(|change| change.track.sampler)
+            .filter(|change| change.sampler.animation == clip.animation)
+            .map(|change| change.sampler.sampler)
             .collect();
         let end = clip.duration;
         let mut others = clip.channels.iter().filter(|channel| !changed.contains(&channel.sampler));
@@ -104,11 +94,11 @@ fn keep_durations(asset: &mut Asset, changes: &mut [Change]) {
             last.is_ok_and(|last| lasts(last.first()))
         });
         let mut mine: Vec<&mut Change> =
-            changes.iter_mut().filter(|change| change.track.animation == clip.animation).collect();
+            changes.iter_mut().filter(|change| change.sampler.animation == clip.animation).collect();
         if kept || mine.iter().any(|change| lasts(change.found.times.last())) {
             continue;
         }
-        mine.retain(|change| lasts(change.track.times.last()));
+        mine.retain(|change| lasts(Some(&change.sampler.last)));
         let smallest = mine.into_iter().min_by_key(|change| change.found.values.len());
         if let Some(change) = smallest {
             change.found = change.found.clone().until(end as f32);

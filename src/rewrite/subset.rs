@@ -10,14 +10,19 @@ use crate::asset::play::{Interpolation, Property, slerp};
 
 /// Keys whose playback keeps what is allowed; all of them where none can go.
 pub(super) fn own_keys(track: &Track, allowed: &Allowed) -> Found {
-    if let Some(deviation) = still(track, allowed) {
-        return picked(track, &[0], deviation);
+    if let Some(found) = resting(track, allowed) {
+        return found;
     }
     let (kept, deviation) = match track.interpolation {
         Interpolation::Step => steps(track, allowed),
         _ => longest_reach(track.times.len(), |from, to| strayed(track, allowed, from, to)),
     };
     picked(track, &kept, deviation)
+}
+
+/// One key, where that is enough.
+pub(super) fn resting(track: &Track, allowed: &Allowed) -> Option<Found> {
+    Some(picked(track, &[0], still(track, allowed)?))
 }
 
 fn picked(track: &Track, kept: &[usize], deviation: f64) -> Found {
@@ -287,7 +292,7 @@ fn angle(track: &Track, key: usize, difference: f64) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::track::Stored;
+    use super::super::track::{Sampler, Stored};
     use super::*;
 
     /// A track of 33 keys, a 32nd of a second apart.
@@ -297,12 +302,18 @@ mod tests {
         let cubic = interpolation == Interpolation::CubicSpline;
         let width = values.len() / times.len() / if cubic { 3 } else { 1 };
         Track {
-            animation: 0,
-            sampler: 0,
+            sampler: Sampler {
+                animation: 0,
+                sampler: 0,
+                property,
+                input: 0,
+                output: 1,
+                keys: times.len(),
+                last: 1.0,
+                bytes: 4 * values.len(),
+            },
             property,
             interpolation,
-            input: 0,
-            output: 1,
             times,
             values,
             width,

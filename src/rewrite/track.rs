@@ -4,16 +4,28 @@ use crate::asset::play::{Channel, Interpolation, Keys, Property};
 use crate::asset::{Asset, Error as AssetError};
 use gltf::json::accessor::ComponentType;
 
-/// A sampler's keys in memory.
-#[derive(Clone, Debug)]
-pub(super) struct Track {
+/// A sampler, and how much it holds.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sampler {
     pub(super) animation: usize,
     pub(super) sampler: usize,
     /// What its channels move; the same for all of them.
     pub(super) property: Property,
-    pub(super) interpolation: Interpolation,
     pub(super) input: usize,
     pub(super) output: usize,
+    pub(super) keys: usize,
+    /// The time of its last key.
+    pub(super) last: f32,
+    /// Bytes of its values.
+    pub(super) bytes: usize,
+}
+
+/// A sampler's keys in memory.
+#[derive(Clone, Debug)]
+pub(super) struct Track {
+    pub(super) sampler: Sampler,
+    pub(super) property: Property,
+    pub(super) interpolation: Interpolation,
     pub(super) times: Vec<f32>,
     /// Values, or tangent, value, tangent, of each key; normalised integers as fractions.
     pub(super) values: Vec<f32>,
@@ -43,6 +55,13 @@ impl Stored {
             (ComponentType::U16, true) => 65535.0,
             (ComponentType::U32, true) => f64::from(u32::MAX),
         };
+        if self.component == ComponentType::F32 {
+            let mut bytes = vec![0; 4 * numbers.len()];
+            for (place, x) in bytes.as_chunks_mut().0.iter_mut().zip(numbers) {
+                *place = x.to_le_bytes();
+            }
+            return bytes;
+        }
         let mut bytes = Vec::with_capacity(numbers.len() * self.component.size());
         for &x in numbers {
             // Casts round towards what fits.
@@ -81,23 +100,26 @@ impl Track {
         }
         let Some(channel) = found else { return Ok(None) };
         let normalized = asset.root().accessors.get(channel.output).is_some_and(|a| a.normalized);
+        let (property, input, output) = (channel.property, channel.input, channel.output);
+        let numbers = channel.keys * channel.stored_width();
+        let bytes = numbers * channel.component().size();
+        let sampler =
+            Sampler { animation, sampler, property, input, output, keys: channel.keys, last: 0.0, bytes };
         let mut track = Track {
-            animation,
             sampler,
-            property: channel.property,
+            property,
             interpolation: channel.interpolation,
-            input: channel.input,
-            output: channel.output,
-            times: Vec::new(),
-            values: Vec::new(),
+            times: Vec::with_capacity(channel.keys),
+            values: Vec::with_capacity(numbers),
             width: channel.width,
             stored: Stored { component: channel.component(), normalized },
         };
         let mut keys = Keys::new(&channel);
         while let Some(block) = keys.next(asset)? {
-            track.times.extend(block.times);
-            track.values.extend(block.values);
+            track.times.extend_from_slice(block.times);
+            track.values.extend_from_slice(block.values);
         }
+        track.sampler.last = track.times.last().copied().unwrap_or(0.0);
         Ok(track.is_sound().then_some(track))
     }
 
@@ -106,13 +128,13 @@ impl Track {
         let finite = self.times.iter().chain(&self.values).all(|x| x.is_finite());
         // Whatever a player makes of these, it is no rotation.
         let turns = self.property != Property::Rotation
-            || (0..self.times.len()).all(|k| super::curves::length(&self.quat(k)) > 0.5);
+            || (0..self.times.len()).all(|k| self.quat(k).iter().map(|x| x * x).sum::<f64>() > 0.25);
         ordered && finite && turns
     }
 
     /// Bytes of times and values.
     pub(super) fn bytes(&self) -> usize {
-        4 * self.times.len() + self.values.len() * self.stored.component.size()
+        4 * self.times.len() + self.sampler.bytes
     }
 
     /// Numbers stored for a key.

@@ -83,6 +83,26 @@ fn few_keys_play_within_the_tolerance() {
 }
 
 #[test]
+fn many_keys_are_walked_through_once() {
+    // 50,001 keys a box; fewer than 16,385 are searched otherwise.
+    let made = Made::new("chain-even", "in.glb", &["--scheme", "bessel", "--fps", "5000"]);
+    for tolerance in ["0.05", "0.0005"] {
+        for more in [&[][..], &["--on-curve"], &["--max-step", "3"]] {
+            let line = ["reduce", "in.glb", "-o", "out.glb", "--json", "--tolerance", tolerance];
+            let summary = made.run(&[&line[..], more].concat()).exits(0).json();
+            let keys = |place: &str| summary["clips"][0][place].as_u64().unwrap();
+            assert!(keys("keysBefore") > 4 * 16_384, "{summary}");
+            assert!(keys("keysAfter") < keys("keysBefore") / 15, "{summary}");
+            let stated = summary["deviation"]["degrees"].as_f64().unwrap();
+            let measured = largest(&made.path("in.glb"), &made.path("out.glb"));
+            assert!(measured <= stated + 1e-6 && stated <= tolerance.parse().unwrap(), "{measured} {stated}");
+            assert!(stated <= 1.1 * measured, "{measured} {stated}");
+            made.run(&["check", "out.glb"]).exits(0);
+        }
+    }
+}
+
+#[test]
 fn twice_is_once_and_little_says_so() {
     let made = Made::new("chain-even", "in.glb", &[]);
     let said = made.run(&["reduce", "in.glb", "-o", "out.glb", "--tolerance", "0.1"]).exits(0);
