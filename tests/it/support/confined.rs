@@ -18,9 +18,11 @@ pub(crate) struct Limits {
 }
 
 impl Limits {
-    /// A second for each MB or part of one, and 64 MB + 64 times the input.
+    /// A second for each MB or part of one, two in a build for development, and 64 MB + 64
+    /// times the input.
     pub(crate) fn of(input: u64) -> Limits {
-        Limits { seconds: input.div_ceil(1_000_000).max(1), memory: 64_000_000 + 64 * input }
+        let each = if cfg!(debug_assertions) { 2 } else { 1 };
+        Limits { seconds: each * input.div_ceil(1_000_000).max(1), memory: 64_000_000 + 64 * input }
     }
 }
 
