@@ -16,6 +16,7 @@ use std::fs::{self, File};
 use std::io::{self, Cursor, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::thread;
 use std::time::Instant;
 
 pub(super) fn run(options: &Reduce) -> Result<Exit, Failure> {
@@ -43,7 +44,13 @@ pub(super) fn run(options: &Reduce) -> Result<Exit, Failure> {
         .collect();
     let outputs = begun(output, &read, &main, &reduced)?;
     if reduced.main.is_some() {
-        checked(output, outputs.last(), &mut asset, &reduced)?;
+        // The disk takes its time.
+        thread::scope(|scope| {
+            let on_disk = scope.spawn(|| outputs.iter().try_for_each(|output| output.file().sync_data()));
+            checked(output, outputs.last(), &mut asset, &reduced)?;
+            let on_disk = on_disk.join().unwrap_or_else(|_| Err(io::ErrorKind::Other.into()));
+            on_disk.map_err(|error| unwritten(output, &error))
+        })?;
     }
     files::unchanged()?;
     let turn = (!reduced.files.is_empty()).then(|| Turn::at(output));
@@ -111,6 +118,10 @@ impl Main {
 
 fn unread(input: &Path, error: &io::Error) -> Failure {
     Failure::refused(format!("{}: cannot be read: {error}", display_name(input)))
+}
+
+fn unwritten(output: &Path, error: &io::Error) -> Failure {
+    Failure::environment(format!("{}: cannot be written: {error}", output.display()))
 }
 
 fn opened(input: &Path) -> Result<(Main, Asset), Failure> {
@@ -199,7 +210,7 @@ fn content(path: &Path) -> Option<Vec<u8>> {
 
 /// Everything written, with names yet to come; what is referred to comes first.
 fn begun(output: &Path, read: &[PathBuf], input: &Main, reduced: &Reduced) -> Result<Vec<Output>, Failure> {
-    let failed = |error| Failure::environment(format!("{}: cannot be written: {error}", output.display()));
+    let failed = |error: io::Error| unwritten(output, &error);
     let mut outputs = Vec::new();
     for file in &reduced.files {
         let bin = Output::create(&output.with_file_name(bin_file_name(output, &file.hash)), read)?;

@@ -1,15 +1,15 @@
 //! The changed file: JSON with some values replaced, buffers with some bytes replaced.
 
+use super::content::{Content, Kind, contents};
 use super::json::{self, Changes, Edits, Span};
-use super::layout::{Buffers, NewView, Place, Settled};
+use super::layout::{Buffers, NewView, Settled};
 use super::plan::Change;
 use super::refs::Fixed;
-use super::track::Stored;
 use super::verify::Strayed;
 use super::{ClipFacts, Error, Facts};
 use crate::asset::Asset;
 use crate::asset::container::{BIN, Container, JSON, MAGIC};
-use crate::asset::play::{Interpolation, Property};
+use crate::asset::play::Interpolation;
 use gltf::json::validation::Checked;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -77,99 +77,6 @@ fn clips(asset: &Asset, changes: &[Change]) -> Vec<ClipFacts> {
     clips
 }
 
-/// What an accessor holds from now on.
-#[derive(Clone, Debug)]
-struct Content {
-    /// Times of keys, not values.
-    times: bool,
-    kind: &'static str,
-    stored: Stored,
-    count: usize,
-    /// As JSON, number by number.
-    min: String,
-    max: String,
-    bytes: Vec<u8>,
-}
-
-impl Content {
-    fn times(times: &[f32]) -> Content {
-        Content { times: true, ..Content::new("SCALAR", 1, Stored::FLOATS, times) }
-    }
-
-    fn new(kind: &'static str, components: usize, stored: Stored, numbers: &[f32]) -> Content {
-        let bound = |pick: fn(f32, f32) -> f32| {
-            let part = |c: usize| numbers.iter().skip(c).step_by(components).copied().reduce(pick);
-            let all: Vec<String> =
-                (0..components).map(|c| stored.as_json(part(c).unwrap_or_default())).collect();
-            format!("[{}]", all.join(","))
-        };
-        Content {
-            times: false,
-            kind,
-            stored,
-            count: numbers.len() / components,
-            min: bound(f32::min),
-            max: bound(f32::max),
-            bytes: stored.bytes(numbers),
-        }
-    }
-
-    /// Changes an accessor that was there; bounds stay where they were stated.
-    fn describe(&self, accessor: &mut Changes, bounds: bool) {
-        accessor.set("componentType", self.stored.component.as_gl_enum());
-        accessor.set("count", self.count);
-        let mut optional = |key, value: Option<&str>| match value {
-            Some(value) => accessor.set(key, value),
-            None => accessor.remove(key),
-        };
-        optional("normalized", self.stored.normalized.then_some("true"));
-        let bounds = bounds || self.times;
-        optional("min", bounds.then_some(&self.min));
-        optional("max", bounds.then_some(&self.max));
-        optional("sparse", None);
-    }
-
-    /// A new accessor.
-    fn accessor(&self, place: &Place) -> String {
-        let offset =
-            if place.offset == 0 { String::new() } else { format!("\"byteOffset\":{},", place.offset) };
-        let normalized = if self.stored.normalized { "\"normalized\":true," } else { "" };
-        let (min, max) = (&self.min, &self.max);
-        let bounds = if self.times { format!(",\"min\":{min},\"max\":{max}") } else { String::new() };
-        format!(
-            "{{\"bufferView\":{},{offset}\"componentType\":{},{normalized}\"count\":{},\"type\":\"{}\"{bounds}}}",
-            place.view,
-            self.stored.component.as_gl_enum(),
-            self.count,
-            self.kind,
-        )
-    }
-
-    /// What two accessors that are one have in common, before their bytes are compared.
-    fn kind(&self) -> Kind {
-        (self.times, self.kind, self.stored.component.as_gl_enum(), self.bytes.len())
-    }
-}
-
-/// Use, type, component type and length.
-type Kind = (bool, &'static str, u32, usize);
-
-impl Stored {
-    /// A number as it is stored, as JSON.
-    fn as_json(self, x: f32) -> String {
-        let bytes = self.bytes(&[x]);
-        match (self == Stored::FLOATS, &bytes[..]) {
-            (true, _) => serde_json::Value::from(f64::from(x)).to_string(),
-            (_, &[a]) if x < 0.0 => a.cast_signed().to_string(),
-            (_, &[a]) => a.to_string(),
-            (_, &[a, b]) if x < 0.0 => i16::from_le_bytes([a, b]).to_string(),
-            (_, &[a, b]) => u16::from_le_bytes([a, b]).to_string(),
-            (_, &[a, b, c, d]) => u32::from_le_bytes([a, b, c, d]).to_string(),
-            _ => x.to_string(),
-        }
-    }
-}
-
 /// A changed sampler's accessors.
 struct Sampler {
     animation: usize,
@@ -223,14 +130,9 @@ impl Writing {
             alike: HashMap::new(),
             next: asset.root().accessors.len(),
         };
-        for Change { sampler, found } in changes {
-            let (kind, components) = match sampler.property {
-                Property::Rotation => ("VEC4", 4),
-                Property::Translation | Property::Scale => ("VEC3", 3),
-                Property::MorphTargetWeights => ("SCALAR", 1),
-            };
-            let values = Content::new(kind, components, found.stored, &found.values);
-            let input = writing.place(sampler.input, Content::times(&found.times));
+        for (change, (times, values)) in changes.iter().zip(contents(&changes)) {
+            let Change { sampler, found } = change;
+            let input = writing.place(sampler.input, times);
             let output = writing.place(sampler.output, values);
             let (animation, sampler) = (sampler.animation, sampler.sampler);
             let interpolation = found.interpolation;
@@ -494,27 +396,39 @@ fn contained(asset: &mut Asset, text: &str, bin: Option<Vec<u8>>) -> Result<Vec<
     };
     let mut json = text.trim_end().as_bytes().to_vec();
     json.resize(json.len().next_multiple_of(4), b' ');
-    let rest = asset.main_bytes(glb.end..u64::MAX)?;
-    let mut file = Vec::with_capacity(json.len() + bin.as_ref().map_or(0, Vec::len) + rest.len() + 64);
-    file.extend([MAGIC, 2u32.to_le_bytes(), [0; 4]].concat());
-    let mut is_first_bin = true;
+    // What comes before the new binary chunk's data, these, and what comes after.
+    let (mut head, mut bin, mut tail) = ([MAGIC, 2u32.to_le_bytes(), [0; 4]].concat(), bin, Vec::new());
+    let mut data = None;
     for chunk in &glb.chunks {
-        let (data, padding) = match (chunk.kind, &bin) {
-            (JSON, _) if file.len() == 12 => (Cow::Borrowed(&json), 0),
-            (BIN, Some(bin)) if is_first_bin => {
-                (Cow::Borrowed(bin), bin.len().next_multiple_of(4) - bin.len())
+        let after = if data.is_some() { &mut tail } else { &mut head };
+        match (chunk.kind, bin.take()) {
+            (BIN, Some(mut bin)) => {
+                bin.resize(bin.len().next_multiple_of(4), 0);
+                after.extend(word(bin.len())?);
+                after.extend(BIN);
+                data = Some(bin);
             }
-            _ => (Cow::Owned(asset.main_bytes(chunk.start..chunk.start + chunk.length)?), 0),
-        };
-        is_first_bin &= chunk.kind != BIN;
-        file.extend(word(data.len() + padding)?);
-        file.extend(chunk.kind);
-        file.extend_from_slice(&data);
-        file.resize(file.len() + padding, 0);
+            (kind, other) => {
+                bin = other;
+                let is_json = kind == JSON && after.len() == 12 && data.is_none();
+                let stored = match is_json {
+                    true => Cow::Borrowed(&json),
+                    false => Cow::Owned(asset.main_bytes(chunk.start..chunk.start + chunk.length)?),
+                };
+                after.extend(word(stored.len())?);
+                after.extend(kind);
+                after.extend_from_slice(&stored);
+            }
+        }
     }
+    let rest = asset.main_bytes(glb.end..u64::MAX)?;
+    let mut file = data.unwrap_or_default();
     let counted = if glb.declared >= glb.length { rest.len() } else { 0 };
-    let length = word(file.len() + counted)?;
-    file[8..12].copy_from_slice(&length);
+    let length = word(head.len() + file.len() + tail.len() + counted)?;
+    head[8..12].copy_from_slice(&length);
+    // Its memory is moved within itself rather than copied.
+    file.splice(0..0, head);
+    file.extend(tail);
     file.extend(rest);
     Ok(file)
 }

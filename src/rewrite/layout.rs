@@ -216,6 +216,12 @@ impl Shifts {
     }
 }
 
+/// A buffer's new bytes, and the view at its end, if it has it.
+pub(super) type Rebuilt = (Vec<u8>, Option<NewView>);
+
+/// Room for what stands around a buffer's changed bytes, mostly.
+const SPARE: usize = 1 << 18;
+
 /// Where everything is, and the bytes to make it so.
 pub(super) struct Settled {
     patches: BTreeMap<usize, BTreeMap<u64, Patch>>,
@@ -248,8 +254,11 @@ impl Settled {
         buffer: usize,
         length: u64,
         read: &mut impl FnMut(Range<u64>, &mut Vec<u8>) -> Result<(), Error>,
-    ) -> Result<Option<(Vec<u8>, Option<NewView>)>, Error> {
-        let (mut new, mut at) = (Vec::new(), 0);
+    ) -> Result<Option<Rebuilt>, Error> {
+        let patched = |patches: &BTreeMap<u64, Patch>| patches.values().map(|patch| patch.bytes.len()).sum();
+        let patched: usize = self.patches.get(&buffer).map_or(0, patched);
+        let home = self.home.as_ref().map_or(0, |home| home.1.len());
+        let (mut new, mut at) = (Vec::with_capacity(patched + home + SPARE), 0);
         for patch in self.patches.get(&buffer).into_iter().flat_map(BTreeMap::values) {
             if patch.range.start < at || patch.range.end > length {
                 return Ok(None);

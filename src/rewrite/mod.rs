@@ -5,6 +5,7 @@
 //! anew, so that whatever refers to an object by its index finds it. How it is done:
 //! docs/reduce.md.
 
+mod content;
 mod curves;
 mod file;
 mod json;

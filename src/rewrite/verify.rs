@@ -49,7 +49,7 @@ const BETWEEN: u32 = 3;
 /// Intervals of the input that are looked at in one run.
 const RUN: usize = 16;
 /// Runs that are looked at; of a longer channel these are evenly chosen.
-const RUNS: usize = 1024;
+const RUNS: usize = 256;
 
 /// The largest distances between the playback of a file and of the same with fewer keys,
 /// clip by clip and channel by channel; looked for at the keys of both and between them,

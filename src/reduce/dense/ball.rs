@@ -10,6 +10,7 @@ pub(super) struct Ball<S: Step> {
 }
 
 impl<S: Step> Ball<S> {
+    #[inline(always)]
     pub(super) fn holds(&self, way: S) -> bool {
         let off = way - self.centre;
         off.dot(off) <= self.radius * self.radius
@@ -19,6 +20,7 @@ impl<S: Step> Ball<S> {
     ///
     /// Along the line of the centres it is all that they share, across it less: the
     /// lens that two balls share is wider than it is thick.
+    #[inline(always)]
     pub(super) fn meet(self, other: Ball<S>) -> Option<Ball<S>> {
         let between = other.centre - self.centre;
         let square = between.dot(between);
@@ -34,21 +36,36 @@ impl<S: Step> Ball<S> {
         let centre = self.centre + between * ((self.radius - radius) / distance);
         Some(Ball { centre, radius })
     }
-
-    /// The point of the ball that is nearest to another.
-    pub(super) fn nearest(&self, way: S) -> S {
-        let off = way - self.centre;
-        let length = off.length();
-        if length <= self.radius { way } else { self.centre + off * (self.radius / length) }
-    }
 }
 
-/// The last τ from `from` to `to` at which |p + eτ| ≤ rτ + ε: it is so at `from`, and not
-/// at `to`. `p` and `e` are given by their scalar products p·p, p·e and e·e.
-pub(super) fn last_within((pp, pe, ee): (f64, f64, f64), r: f64, epsilon: f64, from: f64, to: f64) -> f64 {
-    // Squared: aτ² + 2bτ + c ≤ 0, which comes to be wrong at this of the two zeros.
-    let (a, b, c) = (ee - r * r, pe - r * epsilon, pp - epsilon * epsilon);
-    let root = (b * b - a * c).max(0.0).sqrt();
-    let tau = if b > 0.0 { -c / (b + root) } else { (root - b) / a };
-    if tau.is_finite() { tau.clamp(from, to) } else { from }
+/// The way from what a ball's centre makes of a stretch of time to the curve there, which
+/// is taken to be straight.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Gap<S: Step> {
+    pub(super) ball: Ball<S>,
+    /// τ where it begins, and how long it is.
+    pub(super) from: f64,
+    pub(super) h: f64,
+    pub(super) start: S,
+    pub(super) change: S,
+}
+
+impl<S: Step> Gap<S> {
+    pub(super) fn at(&self, u: f64) -> S {
+        self.start + self.change * u
+    }
+
+    /// The last u of 0 to 1 at which it is no longer than ε and what the ball allows; at 0
+    /// it is not.
+    pub(super) fn last_within(&self, epsilon: f64) -> f64 {
+        // |s + cu| ≤ ru + q, squared: au² + 2bu + d ≤ 0, which comes to be wrong at this
+        // of the two zeros.
+        let (r, q) = (self.ball.radius * self.h, self.ball.radius * self.from + epsilon);
+        let a = self.change.dot(self.change) - r * r;
+        let b = self.start.dot(self.change) - r * q;
+        let d = self.start.dot(self.start) - q * q;
+        let root = (b * b - a * d).max(0.0).sqrt();
+        let u = if b > 0.0 { -d / (b + root) } else { (root - b) / a };
+        if u.is_finite() { u.clamp(0.0, 1.0) } else { 0.0 }
+    }
 }

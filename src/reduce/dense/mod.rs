@@ -7,6 +7,7 @@
 
 mod ball;
 mod near;
+mod stretch;
 mod walk;
 
 #[cfg(test)]
@@ -14,7 +15,8 @@ mod tests;
 
 pub(crate) use near::Near;
 use rayon::prelude::*;
-use walk::{Limits, Stretch, Walk};
+use stretch::{Limits, Stretch};
+use walk::Walk;
 
 /// Where an interval may end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

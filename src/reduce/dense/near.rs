@@ -41,17 +41,23 @@ impl Near for Quat {
     const WIDE: f64 = 0.5;
     const WIDEST: f64 = 0.25;
 
-    #[inline]
+    #[inline(always)]
     fn near_read(stored: [f32; 4]) -> (Quat, f64) {
         let q = Quat::from_xyzw(stored.map(f64::from));
-        let length = q.dot(q).sqrt();
-        let scale = 1.0 / length;
-        (Quat { w: q.w * scale, v: q.v * scale }, (length - 1.0).abs())
+        let square = q.dot(q);
+        let d = square - 1.0;
+        // Of lengths near one the series are exact to the last bit.
+        let (scale, off) = if d.abs() < 1e-5 {
+            (1.0 + d * (-0.5 + d * (0.375 - d * 0.3125)), 0.5 * d.abs() * (1.0 + d.abs()))
+        } else {
+            (1.0 / square.sqrt(), (square.sqrt() - 1.0).abs())
+        };
+        (Quat { w: q.w * scale, v: q.v * scale }, off)
     }
 
     /// With t = tan(φ/2) = |v| / (1 + w) the logarithm is 2 atan(t)/t · v / (1 + w), and
     /// the series of that is short where t is small.
-    #[inline]
+    #[inline(always)]
     fn near_step_to(self, b: Quat) -> Vec3 {
         let turn = self.conjugate() * b;
         let scale = 1.0 / (1.0 + turn.w.abs());
@@ -67,7 +73,7 @@ impl Near for Quat {
         turn.v * (2.0 * series * scale).copysign(turn.w)
     }
 
-    #[inline]
+    #[inline(always)]
     fn near_moved(self, step: Vec3) -> Quat {
         let z = step.dot(step);
         if z > 0.16 {
@@ -84,7 +90,7 @@ impl Near for Quat {
     }
 
     /// An arc of a quarter turn is π/√8 times its chord, a shorter one less.
-    #[inline]
+    #[inline(always)]
     fn apart_squared(self, b: Quat) -> f64 {
         let chord = |b: Quat| {
             let (w, v) = (self.w - b.w, self.v - b.v);
@@ -110,6 +116,7 @@ impl Near for Quat {
 
 /// The beginning of atan(t)/t by the square of t, where `rest` is that of the series
 /// from the fifth term on.
+#[inline(always)]
 fn series(z: f64, rest: f64) -> f64 {
     let square = z * z;
     (1.0 - z * (1.0 / 3.0)) + square * ((0.2 - z * (1.0 / 7.0)) + square * rest)

@@ -154,6 +154,11 @@ fn signs_and_large_steps_stay_what_they_are() {
         }
         checked("signs", &times, &turned, 0.1, 5.0, ends);
     }
+    for ends in [Ends::Free, Ends::OnCurve] {
+        // Half a turn in parts could go either way round.
+        let asked = Asked { tolerance: 0.1 * HALF_DEGREE, step: 5.0 * HALF_DEGREE, ends };
+        assert!(fewer::<Quat, 4>(&times, &jumps, asked).is_none());
+    }
 }
 
 #[test]
@@ -215,6 +220,7 @@ fn what_saves_little_stays() {
     });
     let asked = Asked { tolerance: 0.01 * HALF_DEGREE, step: f64::INFINITY, ends: Ends::Free };
     let found = fewer::<Quat, 4>(&times, &keys, asked).unwrap();
+    checked("short steps", &times, &keys, 0.01, 3.0, Ends::Free);
     assert_eq!((found.times, found.values, found.deviation), (times, keys, 0.0));
 }
 

@@ -1,106 +1,14 @@
 //! From key to key through a stretch, each interval as far as it can reach.
 
-use super::ball::{Ball, last_within};
+use super::ball::{Ball, Gap};
 use super::near::Near;
-use super::{Asked, Ends, Fewer};
+use super::stretch::{Limits, ROUNDING, Stretch};
+use super::{Ends, Fewer};
 use crate::reduce::reach::Key;
 use crate::reduce::value::Step;
 
-/// The part of the tolerance that is aimed at: ends between keys are found as if the way
-/// were straight.
-const AIM: f64 = 0.998;
 /// After so many keys a stretch is left as it is, if more than this part of them stayed.
 const TRIAL: (usize, f64) = (1024, 0.85);
-/// What f64 may add to a distance.
-const ROUNDING: f64 = 1e-11;
-
-/// Neighbouring keys, and what holds for all of them.
-pub(super) struct Stretch<'a, V: Near> {
-    times: &'a [f32],
-    stored: &'a [V::Stored],
-    values: Vec<V>,
-    /// Ways from key to key that no interval may be longer than, or that bend too much
-    /// beside another to be compared with it: they stay. Numbers of their first keys.
-    far: Vec<usize>,
-    /// No other way is longer.
-    longest: f64,
-    /// Numbers stored for a rotation differ from length 1 by at most this.
-    uneven: f64,
-}
-
-impl<'a, V: Near> Stretch<'a, V> {
-    pub(super) fn new(times: &'a [f32], stored: &'a [V::Stored], asked: Asked) -> Stretch<'a, V> {
-        let mut uneven = 0.0f64;
-        let read = |&stored: &V::Stored| {
-            let (value, off) = V::near_read(stored);
-            uneven = uneven.max(off);
-            value
-        };
-        let values: Vec<V> = stored.iter().map(read).collect();
-        // A key that is off the curve is further away.
-        let near = V::FAR.min((asked.step - 2.0 * asked.tolerance).max(0.0));
-        let (mut far, mut longest) = (Vec::new(), 0.0f64);
-        for (i, pair) in values.windows(2).enumerate() {
-            let square = pair[0].apart_squared(pair[1]);
-            if square <= near * near { longest = longest.max(square) } else { far.push(i) }
-        }
-        Stretch { times, stored, values, far, longest: longest.sqrt(), uneven }
-    }
-
-    fn time(&self, key: usize) -> f64 {
-        f64::from(self.times[key])
-    }
-
-    /// The curve at a time between a key and the next.
-    fn at(&self, key: usize, t: f64) -> V {
-        let (from, to) = (self.time(key), self.time(key + 1));
-        let (a, b) = (self.values[key], self.values[key + 1]);
-        a.near_moved(a.near_step_to(b) * ((t - from) / (to - from)))
-    }
-}
-
-impl<V: Near<Stored = [f32; N]>, const N: usize> Stretch<'_, V> {
-    fn as_it_is(&self) -> Fewer<N> {
-        Fewer { times: self.times.to_vec(), values: self.stored.to_vec(), deviation: 0.0 }
-    }
-}
-
-/// What every interval of a stretch must keep, in the units of [`Value::distance`].
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Limits {
-    tolerance: f64,
-    step: f64,
-    ends: Ends,
-    /// How many times as far as at its ends playback may be between two keys.
-    bulge: f64,
-    /// What uneven lengths of the numbers there were add.
-    uneven: f64,
-    /// How many times as much as those of rounded numbers do written lengths differ.
-    lengths: f64,
-    /// The distance at keys that is aimed at.
-    aim: f64,
-}
-
-impl Limits {
-    /// None where the tolerance leaves nothing to aim at.
-    pub(super) fn new<V: Near>(stretch: &Stretch<V>, asked: Asked) -> Option<Limits> {
-        let Asked { step, ends, .. } = asked;
-        let tolerance = asked.tolerance.min(V::WIDEST);
-        let uneven = stretch.uneven.min(0.5);
-        // A way of playback beside one of these is no longer than it and both distances.
-        let way = (stretch.longest + 2.0 * tolerance) * (1.0 + uneven) / (1.0 - uneven);
-        let bulge = V::bulge(way);
-        let lengths = if uneven <= V::EVEN { (uneven / V::ROUNDED).max(1.0) } else { V::EVEN / V::ROUNDED };
-        let both = if ends == Ends::Own { 2.0 } else { 1.0 };
-        let uneven = both * V::bent(uneven, way) * bulge + ROUNDING;
-        let written = match ends {
-            Ends::Own => 0.0,
-            _ => stretch.values.iter().map(|value| value.rounding()).fold(0.0, f64::max),
-        };
-        let aim = AIM * (tolerance - uneven) / bulge - 2.0 * written;
-        (aim > 0.25 * tolerance).then_some(Limits { tolerance, step, ends, bulge, uneven, lengths, aim })
-    }
-}
 
 /// A key that was written, and how far it is off the curve.
 #[derive(Clone, Copy)]
@@ -169,7 +77,10 @@ impl<'a, V: Near<Stored = [f32; N]>, const N: usize> Walk<'a, V> {
         let (keys, part) = TRIAL;
         let now = !self.tried && next > keys && self.stretch.times.len() > 4 * keys;
         self.tried |= now;
-        let kept = self.limits.ends == Ends::Own || self.stretch.uneven <= V::EVEN;
+        // Numbers that stay must be those of rotations, and no further apart than allowed.
+        let sound = self.stretch.uneven <= V::EVEN;
+        let short = self.stretch.far.is_empty() || self.limits.step == f64::INFINITY;
+        let kept = self.limits.ends == Ends::Own || sound && short;
         now && kept && self.times.len() as f64 > part * next as f64
     }
 
@@ -203,12 +114,12 @@ impl<'a, V: Near<Stored = [f32; N]>, const N: usize> Walk<'a, V> {
         let parts = match self.limits.ends {
             Ends::Own => 1.0,
             _ if way <= self.limits.step => 1.0,
-            _ => (way / self.limits.step.min(V::WIDE)).ceil(),
+            _ => self.parts(number, way),
         };
         let off = self.steps(number, parts, to.key.time).max(from.off).max(to.off);
         // Of the numbers as they were stored playback is the same.
         if parts > 1.0 || off > 0.0 {
-            if parts == 1.0 && way > V::LONGEST {
+            if way > V::LONGEST {
                 return None; // half a turn, more or less: either way round
             }
             let bent = V::bent(self.stretch.uneven.min(0.5), way);
@@ -224,6 +135,16 @@ impl<'a, V: Near<Stored = [f32; N]>, const N: usize> Walk<'a, V> {
             false => self.write(to.key),
         }
         Some(to)
+    }
+
+    /// How many steps the way after a key is divided into. Times are rounded: a step may
+    /// take that much longer.
+    fn parts(&self, number: usize, way: f64) -> f64 {
+        let end = self.stretch.times[number + 1];
+        let h = f64::from(end) - self.stretch.time(number);
+        let rounding = (f64::from(end.next_up()) - f64::from(end)) / h;
+        let share = self.limits.step.min(V::WIDE) / way;
+        if share > rounding { (1.0 / (share - rounding)).ceil() } else { (1.0 / share).ceil() }
     }
 
     /// Keys on the curve that divide the way after a key into equal parts; how far they
@@ -265,7 +186,7 @@ impl<'a, V: Near<Stored = [f32; N]>, const N: usize> Walk<'a, V> {
             self.deviation = self.deviation.max(bound);
             return Some(end);
         }
-        let mut served = self.seen.exact.unwrap_or(0);
+        let mut served = self.seen.exact.unwrap_or(self.seen.served.saturating_sub(1));
         loop {
             let end = self.exact(at.next + served);
             if let Some((bound, end)) = self.proven(at, end) {
@@ -282,71 +203,84 @@ impl<'a, V: Near<Stored = [f32; N]>, const N: usize> Walk<'a, V> {
     /// Looks ahead of a key as far as one interval serves.
     fn look(&mut self, at: Placed<V>, stop: usize) {
         let start = f64::from(at.key.time);
-        let Limits { aim, step, .. } = self.limits;
+        let Limits { aim, ends, .. } = self.limits;
+        let furthest = V::LONGEST.min(self.limits.step).powi(2);
+        let keys = at.next..=stop;
+        let ahead = self.stretch.times[keys.clone()].iter().zip(&self.stretch.values[keys]);
+        let mut ball = Ball { centre: V::Step::ZERO, radius: f64::INFINITY };
         let seen = &mut self.seen;
         seen.ahead.clear();
         (seen.served, seen.exact) = (0, None);
-        for key in at.next..=stop {
-            let tau = self.stretch.time(key) - start;
-            let y = at.key.value.near_step_to(self.stretch.values[key]);
+        for (&time, &value) in ahead {
+            let tau = f64::from(time) - start;
+            let y = at.key.value.near_step_to(value);
             seen.ahead.push((tau, y));
             let per = 1.0 / tau;
-            let (way, square) = (y * per, y.dot(y));
-            let ball = Ball { centre: way, radius: aim * per };
-            let met = if seen.served == 0 { Some(ball) } else { seen.ball.meet(ball) };
-            let Some(met) = met.filter(|_| square <= V::LONGEST * V::LONGEST) else { return };
-            let blocked = square > step * step;
-            if blocked && seen.served > 0 {
-                return;
-            }
-            seen.ball = met;
-            if met.holds(way) {
+            let one = Ball { centre: y * per, radius: aim * per };
+            let Some(met) = ball.meet(one).filter(|_| y.dot(y) <= furthest || seen.served == 0) else {
+                break;
+            };
+            ball = met;
+            if ends != Ends::Free && met.holds(one.centre) {
                 (seen.exact, seen.exact_ball) = (Some(seen.served), met);
             }
             seen.served += 1;
-            if blocked {
-                return;
-            }
+        }
+        seen.ball = ball;
+        if let (Ends::Free, Some((tau, y))) = (ends, seen.ahead.get(seen.served.wrapping_sub(1))) {
+            seen.exact = ball.holds(*y * (1.0 / tau)).then_some(seen.served - 1);
         }
     }
 
     /// The furthest end off the curve, between the last key that is served and the next.
+    ///
+    /// The point of the ball that is nearest to where the curve is then: at the last time,
+    /// and at any before it, what the ball and the curve's own allow is shared by their
+    /// radii.
     fn free_end(&self, at: Placed<V>) -> Option<Placed<V>> {
-        let served = self.seen.served;
-        let [(from, y), (to, z)] = self.seen.ahead.get(served.checked_sub(1)?..served + 1)? else {
-            return None;
-        };
-        let ball = self.seen.ball;
-        let e = (*z - *y) * (1.0 / (to - from));
-        let p = *y - e * *from;
-        let across = e - ball.centre;
-        let products = (p.dot(p), p.dot(across), across.dot(across));
-        let tau = last_within(products, ball.radius, self.limits.aim, *from, *to);
-        self.end(at, at.next + served - 1, tau, |tau| ball.nearest((p + e * tau) * (1.0 / tau)))
+        let last = self.seen.served.checked_sub(1)?;
+        let gap = self.gap(last, self.seen.ball)?;
+        let epsilon = self.limits.aim;
+        let u = gap.last_within(epsilon);
+        self.end(at, &gap, at.next + last, u, |tau, u| {
+            let reach = gap.ball.radius * tau;
+            gap.ball.centre * tau + gap.at(u) * (reach / (reach + epsilon))
+        })
     }
 
     /// The furthest end on the curve, between the last key that is one and the next.
     fn end_on_curve(&self, at: Placed<V>) -> Option<Placed<V>> {
         let exact = self.seen.exact?;
-        let [(from, y), (to, z)] = self.seen.ahead.get(exact..exact + 2)? else { return None };
-        let ball = self.seen.exact_ball;
-        let e = (*z - *y) * (1.0 / (to - from));
-        let p = *y - e * *from;
-        let across = e - ball.centre;
-        let products = (p.dot(p), p.dot(across), across.dot(across));
-        let tau = last_within(products, ball.radius, 0.0, *from, *to);
+        let gap = self.gap(exact, self.seen.exact_ball)?;
         let number = at.next + exact;
-        self.end(at, number, tau, |_| V::Step::ZERO).map(|end| {
-            let there = self.stretch.at(number, f64::from(end.key.time));
-            let key = written(there, end.key.time);
-            Placed { key, off: key.value.distance(there), ..end }
-        })
+        let u = gap.last_within(0.0);
+        let end = self.end(at, &gap, number, u, |tau, u| gap.ball.centre * tau + gap.at(u))?;
+        let there = self.stretch.at(number, f64::from(end.key.time));
+        let key = written(there, end.key.time);
+        Some(Placed { key, off: key.value.distance(there), ..end })
     }
 
-    /// A key about τ after another, and after one of the keys there were.
-    fn end(&self, at: Placed<V>, number: usize, tau: f64, way: impl Fn(f64) -> V::Step) -> Option<Placed<V>> {
+    /// The way from a ball to the curve between one of the keys ahead and the next.
+    fn gap(&self, key: usize, ball: Ball<V::Step>) -> Option<Gap<V::Step>> {
+        let &[(from, y), (to, z)] = self.seen.ahead.get(key..key + 2)? else { return None };
+        let start = y - ball.centre * from;
+        Some(Gap { ball, from, h: to - from, start, change: z - ball.centre * to - start })
+    }
+
+    /// A key at a share of the way from one of the keys there were to the next.
+    fn end(
+        &self,
+        at: Placed<V>,
+        gap: &Gap<V::Step>,
+        number: usize,
+        u: f64,
+        step: impl Fn(f64, f64) -> V::Step,
+    ) -> Option<Placed<V>> {
         let start = f64::from(at.key.time);
-        let tau = tau.min((1.0 - 1e-7) * self.limits.step / way(tau).length());
+        let mut tau = gap.from + u * gap.h;
+        if self.limits.step < V::LONGEST {
+            tau = tau.min((1.0 - 1e-7) * tau * self.limits.step / step(tau, u).length());
+        }
         let mut time = (start + tau) as f32;
         if f64::from(time) > start + tau {
             time = time.next_down();
@@ -356,8 +290,9 @@ impl<'a, V: Near<Stored = [f32; N]>, const N: usize> Walk<'a, V> {
             return None;
         }
         let tau = f64::from(time) - start;
-        let key = written(at.key.value.near_moved(way(tau) * tau), time);
-        let there = self.stretch.at(number, f64::from(time));
+        let u = (tau - gap.from) / gap.h;
+        let key = written(at.key.value.near_moved(step(tau, u)), time);
+        let there = self.stretch.share(number, u);
         Some(Placed { key, off: key.value.near_step_to(there).length(), next: number + 1 })
     }
 
