@@ -46,6 +46,8 @@ class Run:
 
     def __init__(self, command, env=None):
         command = [str(word) for word in command]
+        # What the run before left to be written would be waited for in this one.
+        os.sync()
         start = time.perf_counter()
         process = subprocess.Popen(command, env=env or RENDERED, **QUIET)
         _, status, usage = os.wait4(process.pid, 0)
@@ -107,6 +109,7 @@ class Bench:
 
     def floor(self, what, path, env=None):
         command = [EXAMPLES / "floors", what, path]
+        os.sync()
         return float(subprocess.run(command, check=True, capture_output=True, text=True, env=env).stdout)
 
     def python(self, kind):
