@@ -7,13 +7,16 @@ use gltf::json;
 use gltf::json::material::AlphaMode;
 use gltf::json::texture::{MagFilter, WrappingMode};
 use gltf::json::validation::Checked;
+use image::{DynamicImage, ImageDecoder};
 use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Textures larger than this a side start with a smaller copy.
 const MOST_TEXELS: u32 = 4096;
-/// An image that would need more memory than this is left out.
-const MOST_BYTES: u64 = 1 << 30;
+/// An image that would need more memory than this, and so many times its own bytes, is left
+/// out: a few bytes of a hostile file can claim a gigabyte.
+const MOST_BYTES: u64 = 64 << 20;
+const TIMES_ITS_BYTES: u64 = 64;
 
 /// The textures in use, each image decoded once.
 #[derive(Debug, Default)]
@@ -111,12 +114,25 @@ fn wrap(mode: Checked<WrappingMode>) -> Wrap {
 fn decode(asset: &mut Asset, index: usize) -> Result<Vec<Level>, Error> {
     let broken = |e: &dyn std::fmt::Display| Error::data(format!("/images/{index}"), e.to_string());
     let bytes = asset.image(index)?;
+    let most = MOST_BYTES + TIMES_ITS_BYTES * bytes.len() as u64;
     let mut reader =
         image::ImageReader::new(std::io::Cursor::new(bytes)).with_guessed_format().map_err(|e| broken(&e))?;
     let mut limits = image::Limits::default();
-    limits.max_alloc = Some(MOST_BYTES);
+    limits.max_alloc = Some(most);
     reader.limits(limits);
-    let pixels = reader.decode().map_err(|e| broken(&e))?.into_rgba8();
+    let decoder = reader.into_decoder().map_err(|e| broken(&e))?;
+    let (width, height) = decoder.dimensions();
+    // As decoded and with four bytes a pixel, or with these twice.
+    let each = (u64::from(decoder.color_type().bytes_per_pixel()) + 4).max(8);
+    let needed = each.saturating_mul(u64::from(width) * u64::from(height));
+    if needed > most {
+        let (needed, most) = (needed >> 20, most >> 20);
+        return Err(broken(&format!(
+            "{width}x{height} pixels would take {needed} MB of memory, more than the {most} MB that an image of so \
+             few bytes may: make it smaller"
+        )));
+    }
+    let pixels = DynamicImage::from_decoder(decoder).map_err(|e| broken(&e))?.into_rgba8();
     if pixels.is_empty() {
         return Err(broken(&"has no pixels"));
     }
