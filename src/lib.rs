@@ -35,7 +35,7 @@ pub mod path;
 pub mod plot;
 pub mod read;
 pub mod reduce;
-#[cfg(feature = "render")]
+#[cfg(feature = "software")]
 pub mod render;
 pub mod report;
 pub mod rewrite;

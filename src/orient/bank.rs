@@ -31,7 +31,9 @@ impl Bank {
         let count = (duration * PER_SIGMA / SIGMA).ceil().clamp(16.0, MOST_STEPS);
         let step = duration / count;
         let (cells, largest) = cells(course, count as usize, step);
-        let scale = if largest > 0.0 { -degrees.to_radians() / largest } else { 0.0 };
+        let scale = -degrees.to_radians() / largest;
+        // None of what is still, or so small that its scale is no number.
+        let scale = if scale.is_finite() { scale } else { 0.0 };
         let smooth = smoothed(&cells, step, course.is_closed());
         Bank { step, weights: smooth.into_iter().map(|a| scale * a).collect() }
     }

@@ -64,7 +64,9 @@ pub enum Error {
         least: f64,
     },
     /// Float32 times are too coarse for how fast the curve turns a corner.
-    #[error("float32 times cannot follow the curve at {time} s to within {tolerance:e}")]
+    #[error(
+        "float32 times cannot follow the curve at {time} s to within {tolerance:e}: choose a larger tolerance"
+    )]
     Times {
         /// About when, seconds.
         time: f64,

@@ -81,6 +81,7 @@ fn known(clips: &[String]) -> String {
     }
 }
 
+#[cfg(feature = "render")]
 impl Error {
     pub(crate) fn adapter(reason: impl std::fmt::Display) -> Self {
         Error::Adapter { reason: reason.to_string() }

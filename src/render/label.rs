@@ -79,7 +79,8 @@ impl Line {
             let corner = glyph.px_bounds().min;
             let (x0, y0) = ((corner.x + left.round()) as i64, (corner.y + top.round()) as i64);
             glyph.draw(|x, y, cover| {
-                let (x, y) = (x0 + i64::from(x), y0 + i64::from(y));
+                // A word may be meant for a place far off the picture.
+                let (x, y) = (x0.saturating_add(i64::from(x)), y0.saturating_add(i64::from(y)));
                 blend(image, x, y, colour, cover);
             });
         }
@@ -116,6 +117,18 @@ fn blend(image: &mut RgbaImage, x: i64, y: i64, colour: [u8; 3], cover: f32) {
 mod tests {
     use super::*;
     use image::Rgba;
+
+    #[test]
+    fn a_word_far_off_the_picture_is_not_drawn() {
+        let blank = RgbaImage::from_pixel(40, 40, Rgba([9, 9, 9, 255]));
+        for at in [1e300, -1e300, 1e19, 41.0, -41.0, f64::MAX] {
+            for place in [(at, 20.0), (20.0, at), (at, at)] {
+                let mut image = blank.clone();
+                word(&mut image, "X", place, [255, 0, 0]);
+                assert!(image == blank, "{place:?}");
+            }
+        }
+    }
 
     fn written(text: &str, width: u32) -> RgbaImage {
         let mut image = RgbaImage::from_pixel(width, 60, Rgba([255, 255, 255, 255]));

@@ -25,6 +25,10 @@ mod floor;
 mod frame;
 mod framing;
 mod ghost;
+#[cfg(feature = "render")]
+mod gpu;
+#[cfg(not(feature = "render"))]
+#[path = "no_gpu.rs"]
 mod gpu;
 mod grid;
 mod label;

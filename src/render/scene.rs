@@ -183,6 +183,7 @@ impl<'a> Scene<'a> {
     }
 
     /// The material of a draw.
+    #[cfg(feature = "render")]
     pub(crate) fn material(&self, draw: &Draw) -> &'a Material {
         &self.part(draw.part).material
     }

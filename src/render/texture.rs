@@ -13,10 +13,10 @@ use std::sync::Arc;
 
 /// Textures larger than this a side start with a smaller copy.
 const MOST_TEXELS: u32 = 4096;
-/// An image may unpack to so many bytes, four a pixel,
-const UNPACKED: u64 = 1 << 26;
-/// or to so many for each byte it is stored in. A few bytes can claim any size.
-const UNPACKED_FOR_EACH: u64 = 32;
+/// An image that would need more memory than this, and so many times its own bytes, is left
+/// out: a few bytes of a hostile file can claim a gigabyte.
+const MOST_BYTES: u64 = 64 << 20;
+const TIMES_ITS_BYTES: u64 = 64;
 
 /// The textures in use, each image decoded once.
 #[derive(Debug, Default)]
@@ -114,15 +114,17 @@ fn wrap(mode: Checked<WrappingMode>) -> Wrap {
 fn decode(asset: &mut Asset, index: usize) -> Result<Vec<Level>, Error> {
     let broken = |e: &dyn std::fmt::Display| Error::data(format!("/images/{index}"), e.to_string());
     let bytes = asset.image(index)?;
-    let most = UNPACKED.max(UNPACKED_FOR_EACH * bytes.len() as u64);
+    let most = MOST_BYTES + TIMES_ITS_BYTES * bytes.len() as u64;
     let mut reader =
         image::ImageReader::new(std::io::Cursor::new(bytes)).with_guessed_format().map_err(|e| broken(&e))?;
     let mut limits = image::Limits::default();
-    limits.max_alloc = Some(4 * most);
+    limits.max_alloc = Some(most);
     reader.limits(limits);
     let decoder = reader.into_decoder().map_err(|e| broken(&e))?;
     let (width, height) = decoder.dimensions();
-    if 4 * u64::from(width) * u64::from(height) > most {
+    // As decoded and with four bytes a pixel, or with these twice.
+    let each = (u64::from(decoder.color_type().bytes_per_pixel()) + 4).max(8);
+    if each.saturating_mul(u64::from(width) * u64::from(height)) > most {
         return Err(broken(&format!(
             "has {width} × {height} pixels, too many for the bytes it is stored in"
         )));

@@ -219,6 +219,26 @@ fn a_broken_texture_is_named_and_the_rest_drawn() {
 }
 
 #[test]
+fn an_image_that_takes_far_more_memory_than_its_bytes_is_left_out() {
+    let mut bomb = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bomb, 16384, 8192);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_depth(png::BitDepth::One);
+    encoder.write_header().unwrap().write_image_data(&vec![0; 16384 / 8 * 8192]).unwrap();
+    assert!(bomb.len() < 1 << 20, "{}", bomb.len());
+    let mut file = plain_house();
+    let accessor = file.accessor("SCALAR", 5121, &bomb, bomb.len());
+    let view = file.json["accessors"][accessor]["bufferView"].clone();
+    file.push("images", json!({"bufferView": view, "mimeType": "image/png"}));
+    file.push("textures", json!({"source": 0}));
+    file.push("materials", json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}));
+    file.json["meshes"][0]["primitives"][0]["material"] = json!(0);
+    let picture = file.picture();
+    assert!(picture.covered > 0.2);
+    assert!(picture.notes[0].contains("16384 × 8192 pixels, too many for the bytes"), "{:?}", picture.notes);
+}
+
+#[test]
 fn what_is_not_drawn_is_said_in_one_line() {
     let mut file = plain_house();
     let primitive = file.json["meshes"][0]["primitives"][0].clone();

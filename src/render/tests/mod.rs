@@ -1,6 +1,7 @@
 //! Pictures of scenes made by hand, and the two renderers against each other.
 
 mod cpu;
+#[cfg(feature = "render")]
 mod gpu;
 mod load;
 mod pictures;
