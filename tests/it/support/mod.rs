@@ -6,6 +6,7 @@ pub(crate) mod altered;
 pub(crate) mod drawn;
 #[cfg(feature = "cli")]
 pub(crate) mod loaded;
+pub(crate) mod made;
 #[cfg(feature = "cli")]
 pub(crate) mod schema;
 #[cfg(all(feature = "cli", feature = "render"))]
