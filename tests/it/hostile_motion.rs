@@ -139,16 +139,19 @@ fn keys_by_every_scheme_and_all_ends() {
     for (name, text) in clips() {
         for &scheme in Scheme::EVERY {
             let mut outputs = 0;
-            let by_rate = Ends::ALL.map(|ends| (ends, samplings()[0]));
+            // Proving its bound takes half a second where little is optimised.
+            let slow = scheme == Scheme::BarryGoldman;
+            let ends = if slow { &[Ends::Natural][..] } else { &Ends::ALL };
+            let by_rate = ends.iter().map(|&ends| (ends, samplings()[0]));
             // A search for the fewest keys takes seconds a scheme where little is optimised.
             let searched = matches!(scheme, Scheme::Slerp | Scheme::Bessel);
             let others = match name.contains("year") {
                 true => 2..3,
-                false if searched => 3..5,
-                false => 1..2,
+                false if searched => 3..4,
+                false => 0..0,
             };
             let otherwise = others.map(|i| (Ends::Natural, samplings()[i]));
-            for (ends, sampling) in by_rate.into_iter().chain(otherwise) {
+            for (ends, sampling) in by_rate.chain(otherwise) {
                 let shape = Shape { ends, tcb, ..Shape::default() };
                 outputs += u32::from(is_sound_or_refused(name, &text, plain(scheme, shape, sampling)));
             }
