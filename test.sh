@@ -73,4 +73,16 @@ done
 for kind in chain body flight bezier camera euler; do
   "$dat2glb" example "$kind" | "$dat2glb" convert - -o "$out/$kind.glb" -q
 done
+mkdir "$out/hostile"
+hostile() { # NAME OPTION...; an input on standard input
+  "$dat2glb" convert - -o "$out/hostile/$1.glb" -q "${@:2}"
+}
+printf '# 1 2\n0 1 0 0 0\n1 -1 0 0 0\n2 1 0 0 0\n' | hostile identical
+printf '# 1 2\n0 1 0 0 0\n1 0 1 0 0\n2 0 0 1 0\n3 0 0 0 1\n' | hostile half-turns
+printf '# 1 2\n0 1 0 0 0\n1 1 8.7e-12 0 0\n2 1 0 8.7e-12 0\n' | hostile billionth-of-a-degree
+printf '# 1 2\n0 1 0 0 0\n1e-6 0.8 0.6 0 0\n2e-6 0.6 0.8 0 0\n' | hostile microseconds
+printf '# 1 2\n0 1 0 0 0\n31557600 0.8 0.6 0 0\n63115200 0.6 0.8 0 0\n' | hostile years --fps 1/864000
+printf '# 1 2\n0 1e-310 0 0 0\n1 8e299 6e299 0 0\n2 1 5e-324 0 0\n' | hostile lengths
+printf '# catmull-rom 3\n1 2 3\n1 2 3\n1 2 3\n' | hostile still
+printf '# catmull-rom 3\n1e30 0 0\n0 1e-30 0\n-1e30 0 1e-310\n' | hostile huge
 node tests/validator/validate.mjs .tools/node_modules "$out"

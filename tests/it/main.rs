@@ -1,6 +1,8 @@
 //! Whole-flow tests, a file a subject. Those of the command line run the real program.
 
 mod clips;
+mod clips_played;
+mod hostile_motion;
 mod reference;
 mod scipy;
 mod support;

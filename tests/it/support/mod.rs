@@ -8,6 +8,7 @@ pub(crate) mod confined;
 pub(crate) mod drawn;
 #[cfg(feature = "cli")]
 pub(crate) mod loaded;
+pub(crate) mod made;
 #[cfg(feature = "cli")]
 pub(crate) mod schema;
 #[cfg(all(feature = "cli", feature = "render"))]
