@@ -257,6 +257,7 @@ impl Columns {
         rows
     }
 
+    #[expect(clippy::needless_range_loop, reason = "one index into many columns, as vector code wants it")]
     #[inline(always)]
     fn work_out<S: Simd, B: Broad>(&self, _: S, rows: &mut Rows) {
         for lane in 0..WIDTH {

@@ -102,27 +102,17 @@ impl<N: Number> SquadArc<N> {
 #[inline(always)]
 fn controls<N: Number>(span: &Span<N>) -> (Quat<N>, Quat<N>) {
     let Span { start, end, .. } = *span;
-    let first = match span.before_or_repeated() {
-        Some(before) => Some(control(before, start, end)),
-        None => None,
-    };
-    let last = match span.after_or_repeated() {
-        Some(after) => Some(control(after, end, start)),
-        None => None,
-    };
-    match (first, last) {
-        (Some(a1), Some(a2)) => (a1, a2),
-        _ => controls_at_an_end(span, first, last),
+    match (span.before_or_repeated(), span.after_or_repeated()) {
+        (Some(before), Some(after)) => (control(before, start, end), control(after, end, start)),
+        _ => controls_at_an_end(span),
     }
 }
 
 /// The same where one does not follow from a neighbour, or neither.
-fn controls_at_an_end<N: Number>(
-    span: &Span<N>,
-    first: Option<Quat<N>>,
-    last: Option<Quat<N>>,
-) -> (Quat<N>, Quat<N>) {
+fn controls_at_an_end<N: Number>(span: &Span<N>) -> (Quat<N>, Quat<N>) {
     let Span { start, end, .. } = *span;
+    let first = span.before_or_repeated().map(|before| control(before, start, end));
+    let last = span.after_or_repeated().map(|after| control(after, end, start));
     let k = N::constant;
     let log = |from: Quat<N>, to: Quat<N>| N::log(from.conjugate() * to);
     // The velocity at a key is the step's and twice the logarithm of what leads to the control.

@@ -295,7 +295,7 @@ mod tests {
         }
 
         #[test]
-        fn angle_over_sine(angle in prop_oneof![0.0..3.14f64, 0.0..1e-6f64, Just(0.0), 3.1..3.1415f64]) {
+        fn angle_over_sine(angle in prop_oneof![0.0..3.0f64, 0.0..1e-6f64, Just(0.0), 3.0..3.13f64]) {
             let (sin, cos) = angle.sin_cos();
             let (ours, theirs) = (Lane(cos).angle_over_sine(Lane(sin * sin)).0, cos.angle_over_sine(sin * sin));
             // The angle is good to a unit in the last place, the quotient to another.
