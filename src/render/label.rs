@@ -121,7 +121,7 @@ mod tests {
     #[test]
     fn a_word_far_off_the_picture_is_not_drawn() {
         let blank = RgbaImage::from_pixel(40, 40, Rgba([9, 9, 9, 255]));
-        for at in [1e300, -1e300, 1e19, 41.0, -41.0, f64::MAX] {
+        for at in [1e300, -1e300, 1e19, 1e3, -1e3, f64::MAX] {
             for place in [(at, 20.0), (20.0, at), (at, at)] {
                 let mut image = blank.clone();
                 word(&mut image, "X", place, [255, 0, 0]);

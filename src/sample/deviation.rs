@@ -66,6 +66,12 @@ pub(super) fn upper_bounds(stretch: &Stretch) -> Bounds {
             }
         }
     }
+    if let Some((found, bound)) = after_the_last(stretch) {
+        for worst in [&mut search.slerp, &mut search.nlerp] {
+            worst.note(found);
+            worst.settle(bound);
+        }
+    }
     let largest = search.turns.iter().copied().fold(0.0, f64::max);
     let bound = |worst: Worst, blend| 2.0 * (worst.bound() + blend::uneven_lengths(blend, largest));
     Bounds { slerp: bound(search.slerp, Blend::Slerp), nlerp: bound(search.nlerp, Blend::Nlerp) }
@@ -94,8 +100,26 @@ pub(super) fn held_bounds(stretch: &Stretch) -> Bounds {
             from = to;
         }
     }
+    if let Some((found, bound)) = after_the_last(stretch) {
+        worst.note(found);
+        worst.settle(bound);
+    }
     let bound = 2.0 * worst.bound();
     Bounds { slerp: bound, nlerp: bound }
+}
+
+/// Where float32 puts the last sample a little before the last key, the motion goes on while
+/// playback stays: how far it gets, and a bound of that, as half angles.
+fn after_the_last(stretch: &Stretch) -> Option<(f64, f64)> {
+    let (&last, &shown) = (stretch.times.last()?, stretch.written.last()?);
+    let &end = stretch.motion.times().last()?;
+    let (t, shown) = (f64::from(last), written(shown));
+    (t < end && end as f32 == last).then(|| {
+        let piece = stretch.motion.piece_at(t);
+        let gap = |t: f64| 0.5 * shown.angle_to(stretch.motion.at(t));
+        let way = on_stretch(&piece, t, end).speed * (end - t);
+        (gap(t).max(gap(end)), gap(end).max((gap(t) + way).min(FRAC_PI_2)))
+    })
 }
 
 pub(super) struct Search<'a> {
@@ -438,6 +462,22 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn what_follows_the_last_sample_counts() {
+        // 150° within 0.01 s, the last key 1e-7 s behind the float32 number for its time.
+        let end = 2.292_274_320_361_877;
+        let times = [0.0, end - 0.01, end];
+        let keys = keys(150.0, 3);
+        let motion = Motion::new(&times, &keys, Scheme::Slerp, Ends::Natural);
+        let timeline = Timeline::new(&times, None, "60".parse().unwrap(), true).unwrap();
+        assert!(f64::from(timeline.last()) < end);
+        let facts =
+            rotations(&[Rotation::Motion(motion)], &timeline, Default::default(), |_| Ok::<(), ()>(()));
+        let missed = 150.0 / 0.01 * (end - f64::from(timeline.last()));
+        let stated = facts.unwrap()[0].deviation.unwrap();
+        assert!(stated >= missed && stated < 1.01 * missed + 1e-5, "{stated} {missed}");
     }
 
     #[test]

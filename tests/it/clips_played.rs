@@ -114,8 +114,10 @@ proptest! {
         let motion = Motion::new(&clip.times, &clip.tracks[0], scheme, ends).with_tcb(tcb);
         let curve = |t: f64| glams(motion.at(t).to_xyzw());
         let channel = &made.channels()[0];
-        // Under `hold` the last segment rests at its first key.
-        let met = clip.times.len() - usize::from(ends == Ends::Hold && scheme.has_ends());
+        // Under `hold` the last segment rests at its first key; `closed` ends at the first key
+        // of all, which the last one may be near.
+        let other_end = matches!(ends, Ends::Hold | Ends::Closed) && scheme.has_ends();
+        let met = clip.times.len() - usize::from(other_end);
         if scheme.passes_keys() {
             for (&t, &key) in clip.times.iter().zip(&clip.tracks[0]).take(met) {
                 // A rotation half a turn away is 1e-7 degrees off by rounding alone.
