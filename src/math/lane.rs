@@ -90,8 +90,9 @@ impl Number for Lane {
     #[inline(always)]
     fn polar(q: Quat<Lane>) -> (Lane, Vec3<Lane>) {
         let sine = Lane::length(q.v);
-        let scale = sine.below(f64::MIN_POSITIVE, Lane(0.0), Lane(1.0) / sine);
-        (Lane(angle(sine.0, q.w.0)), q.v * scale)
+        let least = f64::MIN_POSITIVE;
+        let scale = sine.below(least, Lane(0.0), Lane(1.0) / sine);
+        (sine.below(least, Lane(0.0), Lane(angle(sine.0, q.w.0))), q.v * scale)
     }
 
     #[inline(always)]
@@ -274,6 +275,20 @@ mod tests {
         fn sine_over_angle(x in prop_oneof![0.0..10.0f64, 0.0..1e-6f64, Just(0.0)]) {
             let (ours, theirs) = (Lane(x).cos_sinc_of_square(), x.cos_sinc_of_square());
             prop_assert!((ours.0.0 - theirs.0).abs() < 4e-16 && (ours.1.0 - theirs.1).abs() < 4e-16, "{x}");
+        }
+
+        #[test]
+        fn polar_is_the_logarithm(v in prop::array::uniform3(-1.5..1.5f64), scale in prop_oneof![Just(1.0), Just(1e-310), Just(0.0)], sign in any::<bool>()) {
+            let q = Quat::exp(Vec3::new(v[0], v[1], v[2]) * scale);
+            let q = if sign { -q } else { q };
+            let (angle, axis) = f64::polar(q);
+            let lane = Lane::polar(Quat::constant(q));
+            prop_assert!((lane.0.0 - angle).abs() < 1e-15);
+            for (a, b) in [(lane.1.x.0, axis.x), (lane.1.y.0, axis.y), (lane.1.z.0, axis.z)] {
+                prop_assert!((a - b).abs() < 1e-15);
+            }
+            prop_assert!(scale == 1.0 || (angle == 0.0 && axis == Vec3::ZERO));
+            prop_assert!(scale < 1.0 || (axis * angle - q.log()).length() < 1e-14);
         }
 
         #[test]

@@ -66,8 +66,8 @@ pub trait Number: Scalar + PartialOrd {
     /// The logarithm of a unit quaternion.
     fn log(q: Quat<Self>) -> Vec3<Self>;
 
-    /// Length and unit direction of the logarithm of a unit quaternion; of no rotation the
-    /// direction zero.
+    /// Length and unit direction of the logarithm of a unit quaternion; both zero where its
+    /// vector part is smaller than any normal number.
     fn polar(q: Quat<Self>) -> (Self, Vec3<Self>);
 
     /// The length of a vector.
@@ -90,7 +90,8 @@ impl Number for f64 {
 
     fn polar(q: Quat) -> (f64, Vec3) {
         let sine = q.v.length();
-        if sine == 0.0 { (0.0, Vec3::ZERO) } else { (sine.atan2(q.w), q.v * (1.0 / sine)) }
+        // The inverse of a smaller number may be infinite.
+        if sine < f64::MIN_POSITIVE { (0.0, Vec3::ZERO) } else { (sine.atan2(q.w), q.v * (1.0 / sine)) }
     }
 
     fn length(v: Vec3) -> f64 {
