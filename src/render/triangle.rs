@@ -196,7 +196,9 @@ impl Corner {
     fn on_screen(&self, size: (u32, u32)) -> [i32; 2] {
         let [x, y, _, w] = self.clip;
         let snap = |v: f32| (v * SUBPIXELS as f32 + 0.5).floor() as i32;
-        [snap((0.5 + 0.5 * (x / w)) * size.0 as f32), snap((0.5 - 0.5 * (y / w)) * size.1 as f32)]
+        // Where w is next to nothing, what was cut at the guarded region's sides rounds beyond them.
+        let [x, y] = [x / w, y / w].map(|v| v.clamp(-GUARD as f32, GUARD as f32));
+        [snap((0.5 + 0.5 * x) * size.0 as f32), snap((0.5 - 0.5 * y) * size.1 as f32)]
     }
 
     /// In double precision, as far ends may lie 10⁹ pictures away.
@@ -237,4 +239,23 @@ fn cut(corners: [Corner; 3]) -> Vec<Corner> {
     // Rounding may leave a corner a hair outside; what is worse is not finite.
     let sound = |c: &Corner| c.clip[3] > 0.0 && c.clip.iter().all(|v| v.is_finite());
     if polygon.iter().all(sound) { polygon } else { Vec::new() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn corners_stay_within_the_guarded_region() {
+        let limit = |size: u32| (0.5 + 0.5 * GUARD as f32) * size as f32 * SUBPIXELS as f32 + 1.0;
+        for w in [1.0, 1e-20, 1e-38, f32::MIN_POSITIVE / 8.0, 0.0] {
+            for [x, y] in [[w, -w], [1.0, -1.0], [-1e30, 1e30], [0.0, f32::MAX], [f32::NAN, 0.0]] {
+                let corner = Corner { clip: [x, y, 0.0, w], ..Corner::default() };
+                let on_screen = corner.on_screen((640, 480));
+                for (at, size) in on_screen.into_iter().zip([640, 480]) {
+                    assert!((at as f32).abs() <= limit(size), "{x} {y} {w}: {at}");
+                }
+            }
+        }
+    }
 }
