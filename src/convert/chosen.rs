@@ -5,6 +5,7 @@ use crate::moves::Move;
 use crate::reduce::Facts;
 use crate::sample::{self, Encoding, Steps, Timeline, TrackFacts, Writing, code};
 use crate::write::Interpolation;
+use std::cell::LazyCell;
 use std::convert::Infallible;
 
 /// The keys of one move.
@@ -137,7 +138,10 @@ fn known(facts: &Facts) -> TrackFacts {
 /// The moves of an object of which some are held from key to key: those by their keys, the
 /// others by the samples of a timeline.
 pub(super) fn held_and_sampled<M>(moves: &[(M, Move)], timeline: &Timeline, writing: Writing) -> Vec<Chosen> {
-    let times: Vec<f32> = (0..timeline.chunks()).flat_map(|chunk| timeline.chunk(chunk).1).collect();
+    // Many, of a clip that is long and held; then nothing asks for them.
+    let times = LazyCell::new(|| {
+        (0..timeline.chunks()).flat_map(|chunk| timeline.chunk(chunk).1).collect::<Vec<f32>>()
+    });
     let one = |(_, a_move): &(M, Move)| match a_move {
         Move::Keys(motion) if motion.is_step() => held(motion, writing.encoding),
         other => sampled(other, timeline, &times, writing),
