@@ -90,12 +90,14 @@ pub(super) struct Late {
 }
 
 impl Found {
-    /// Figures of the most digits.
-    pub(super) fn widest(tracks: usize, paths: usize, cameras: usize) -> Found {
-        let widest = TrackFacts { deviation: Some(-f64::MIN_POSITIVE), ..TrackFacts::default() };
+    /// All figures that there can be.
+    pub(super) fn every(tracks: usize, paths: usize, cameras: usize) -> Found {
+        let figure = Some(WIDEST);
+        let every =
+            TrackFacts { deviation: figure, nlerp: figure, measured: figure, ..TrackFacts::default() };
         let seen = |tracks, paths| Seen {
-            tracks: vec![widest; tracks],
-            distances: vec![-f64::MIN_POSITIVE; paths],
+            tracks: vec![every; tracks],
+            distances: vec![WIDEST; paths],
             keys_moved: None,
         };
         Found { object: seen(tracks, paths), cameras: seen(cameras, cameras), corners: None }
@@ -158,6 +160,19 @@ impl ClipFacts {
         }
     }
 
+    /// The same with figures of the most digits wherever a file has one.
+    pub(super) fn widest(mut self) -> ClipFacts {
+        for track in &mut self.tracks {
+            for figure in [&mut track.deviation, &mut track.nlerp, &mut track.measured] {
+                *figure = Some(WIDEST);
+            }
+        }
+        for figure in [&mut self.deviation_units, &mut self.displacement_units] {
+            *figure = figure.map(|_| WIDEST);
+        }
+        self
+    }
+
     /// The warning of steps that component-blending viewers show inexactly.
     pub fn warning(&self) -> Option<Warning> {
         let large: usize = self.tracks.iter().map(|track| track.steps.large).sum();
@@ -178,16 +193,22 @@ impl ClipFacts {
     }
 }
 
+/// What is not told from zero.
+const SMALLEST: f64 = 1e-300;
+/// What takes the most digits, as JSON has them, of all that [`rounded_up`] returns.
+const WIDEST: f64 = 1.2346e15;
+
 /// Rounded up to five significant digits: still an upper bound, and readable.
 pub(super) fn rounded_up(x: f64) -> f64 {
     if x <= 0.0 || !x.is_finite() {
         return x;
     }
-    let unit = 10f64.powi(x.log10().floor() as i32 - 4);
-    let units = (x / unit).ceil();
+    let x = x.max(SMALLEST);
+    let exponent = x.log10().floor() as i32 - 4;
+    let units = (x / 10f64.powi(exponent)).ceil();
     // Decimal text rounds once more; the nearest number to it may lie below x.
-    let rounded = format!("{units}e{}", unit.log10().round() as i32).parse().unwrap_or(x);
-    if rounded < x { x } else { rounded }
+    let decimals = [units, units + 1.0].map(|units| format!("{units}e{exponent}").parse());
+    decimals.into_iter().flatten().find(|&decimal: &f64| decimal >= x).unwrap_or(x)
 }
 
 #[cfg(test)]
@@ -196,11 +217,31 @@ mod tests {
 
     #[test]
     fn rounding_up_stays_above() {
-        for x in [1.234_567_8e-7, 0.1, 0.000_123_450_001, 9.999_99, 12345.6, 3e-320] {
+        for x in [1.234_567_8e-7, 0.1, 0.000_123_450_001, 9.999_99, 12345.6] {
             let up = rounded_up(x);
             assert!(up >= x && up <= x * (1.0 + 2e-4), "{x} {up}");
         }
         assert_eq!(rounded_up(0.012_345_1), 0.012_346);
         assert_eq!(rounded_up(0.0), 0.0);
+    }
+
+    #[test]
+    fn widest_is_so_in_whatever_copies_add() {
+        let late = Late { degrees: vec![Some(1.0), Some(0.0)], units: 1.0 };
+        let found = Found::every(2, 1, 0).late(&late);
+        let facts = ClipFacts::new("swing".into(), "slerp", (2, 2), found, Vec::new()).widest();
+        let figures = facts.tracks.iter().flat_map(|track| [track.deviation, track.nlerp, track.measured]);
+        assert!(figures.chain([facts.deviation_units]).all(|figure| figure == Some(WIDEST)));
+    }
+
+    #[test]
+    fn none_has_more_digits_than_the_widest() {
+        let length = |x: f64| serde_json::to_string(&x).unwrap().len();
+        for exponent in -330..309 {
+            for units in [1.0, 1.234_5, 1.234_500_1, 2.2, 9.999_91, 9.999_99, 1.0 + f64::EPSILON] {
+                let x = format!("{units}e{exponent}").parse().unwrap();
+                assert!(length(rounded_up(x)) <= length(WIDEST), "{x:e}");
+            }
+        }
     }
 }

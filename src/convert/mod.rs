@@ -153,10 +153,10 @@ impl<'a> ClipPlan<'a> {
         }
     }
 
-    /// What would be found out if all figures took the most digits.
-    fn widest(&self) -> Found {
+    /// All figures that could be found out.
+    fn every_figure(&self) -> Found {
         let paths = self.object.iter().filter(|(_, a_move)| a_move.travel().is_some()).count();
-        Found::widest(self.object.len() - paths, paths, self.cameras.len() / 2)
+        Found::every(self.object.len() - paths, paths, self.cameras.len() / 2)
     }
 }
 
@@ -274,8 +274,9 @@ impl<'a> Plan<'a> {
     /// An upper bound of the JSON's length: that of a document whose figures all take the
     /// most digits.
     fn widest_json(&self, layout: &Layout) -> usize {
-        let facts: Vec<ClipFacts> =
-            (0..self.clips.len()).map(|clip| self.facts(clip, layout, self.clips[clip].widest())).collect();
+        let widest =
+            |(clip, plan): (usize, &ClipPlan)| self.facts(clip, layout, plan.every_figure()).widest();
+        let facts: Vec<ClipFacts> = self.clips.iter().enumerate().map(widest).collect();
         let uri = "0".repeat(64);
         self.json(layout, &facts, Some(uri)).len()
     }
