@@ -1,14 +1,21 @@
 //! The largest value of a distance over time, by branch and bound.
 //!
 //! A stretch of time is done once its upper bound is little above the worst that was
-//! found anywhere; any other is halved.
+//! found anywhere; any other is halved, and of the parts always the one that may be worst.
 
 use crate::curve::Rates;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
 
 /// How much the bound may exceed the worst that was found.
 const SLACK: f64 = 1.05;
-/// How often a stretch is halved at most.
+/// How often a part is halved, and its halves, at most.
 const DEPTH: u32 = 14;
+/// How many halvings there are for all stretches, of which each may take a share, and a few
+/// more: what cannot be bounded, or not soon, must not take long.
+const HALVINGS: u32 = 1 << 15;
+const SHARE: u32 = 16;
+const FEWEST_HALVINGS: u32 = 16;
 /// What tighter rates can be hoped to leave of known ones.
 const HOPE: f64 = 0.5;
 
@@ -42,18 +49,49 @@ pub(crate) struct Worst {
     negligible: f64,
     /// What the bound is to stay within, if it can be.
     limit: f64,
+    /// How many halvings are left.
+    halvings: u32,
 }
+
+/// A part that is not done.
+struct Open {
+    bound: f64,
+    part: Part,
+    /// Rates that hold there.
+    rates: Rates,
+    level: u32,
+}
+
+impl Ord for Open {
+    fn cmp(&self, other: &Open) -> Ordering {
+        self.bound.total_cmp(&other.bound)
+    }
+}
+
+impl PartialOrd for Open {
+    fn partial_cmp(&self, other: &Open) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Open {
+    fn eq(&self, other: &Open) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Open {}
 
 impl Worst {
     /// Nothing is known; distances below `negligible` are not refined.
     pub(crate) fn new(negligible: f64) -> Worst {
-        Worst { found: 0.0, bound: 0.0, negligible, limit: f64::INFINITY }
+        Worst { found: 0.0, bound: 0.0, negligible, limit: f64::INFINITY, halvings: HALVINGS }
     }
 
     /// Nothing is known; stretches are refined until they are within a limit, or something
     /// beyond it is found.
     pub(crate) fn proving(limit: f64) -> Worst {
-        Worst { found: limit, bound: 0.0, negligible: 0.0, limit }
+        Worst { found: limit, bound: 0.0, negligible: 0.0, limit, halvings: HALVINGS }
     }
 
     /// One stretch more, refined until its bound is within a limit, or something beyond
@@ -91,26 +129,36 @@ impl Worst {
     /// Bounds a gap on a part from rates that hold there; for the first `cheap` halvings
     /// without asking for the part's own.
     pub(crate) fn search(&mut self, gap: &impl Gap, part: Part, known: Rates, cheap: u32) {
-        self.part(gap, part, known, (0, cheap));
+        let mut halvings = self.halvings / SHARE + FEWEST_HALVINGS;
+        let mut open = BinaryHeap::from([self.open(gap, part, known, (0, cheap))]);
+        // No other is beyond the one on top.
+        while let Some(Open { bound, part, rates, level }) = open.pop() {
+            if self.accepts(bound) || level == DEPTH || halvings == 0 || self.found > self.limit {
+                self.settle(bound);
+                return;
+            }
+            let middle = 0.5 * (part.from + part.to);
+            let at_middle = gap.at(middle);
+            self.note(at_middle);
+            let halves = [
+                Part { to: middle, at_to: at_middle, ..part },
+                Part { from: middle, at_from: at_middle, ..part },
+            ];
+            open.extend(halves.map(|half| self.open(gap, half, rates, (level + 1, cheap))));
+            halvings -= 1;
+            self.halvings = self.halvings.saturating_sub(1);
+        }
     }
 
-    fn part(&mut self, gap: &impl Gap, part: Part, known: Rates, (level, cheap): (u32, u32)) {
+    /// A part with its bound, from known rates or its own.
+    fn open(&self, gap: &impl Gap, part: Part, known: Rates, (level, cheap): (u32, u32)) -> Open {
         let mut rates = known;
         let mut bound = gap.bound(&part, rates);
         if !self.accepts(bound) && level >= cheap && self.hopeful(gap, &part, rates) {
             rates = rates.and(gap.rates(part.from, part.to));
             bound = bound.min(gap.bound(&part, rates));
         }
-        if self.accepts(bound) || level == DEPTH || self.found > self.limit {
-            self.settle(bound);
-            return;
-        }
-        let middle = 0.5 * (part.from + part.to);
-        let at_middle = gap.at(middle);
-        self.note(at_middle);
-        let level = (level + 1, cheap);
-        self.part(gap, Part { to: middle, at_to: at_middle, ..part }, rates, level);
-        self.part(gap, Part { from: middle, at_from: at_middle, ..part }, rates, level);
+        Open { bound, part, rates, level }
     }
 
     /// Whether rates of the part alone might do.
