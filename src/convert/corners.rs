@@ -9,9 +9,9 @@ use crate::write::Interpolation;
 use rayon::prelude::*;
 use std::borrow::Cow;
 
-/// Longer clips are bounded by the sum of what their rotations are off: looking at all of
-/// them at once would take longer than making them.
-const MOST_KEYS: usize = 1 << 16;
+/// Clips of more rotations are bounded by the sum of what each of them is off: looking at all
+/// at once would take longer than making them.
+const MOST_KEYS: usize = 1 << 18;
 
 /// What a move is played by.
 type Keys<'p> = (&'p [f32], Cow<'p, Values>);
@@ -20,7 +20,7 @@ type Keys<'p> = (&'p [f32], Cow<'p, Values>);
 /// None where there is no chain, something of it is not played LINEAR from what is known,
 /// or the clip is long.
 pub(super) fn displacement(ground: &Ground, plan: &ClipPlan, writing: Writing) -> Option<f64> {
-    let grid = grid(&plan.when)?;
+    let grid = grid(&plan.when, plan.object.len())?;
     let keys = (0..plan.object.len()).map(|i| keys(plan, i, &grid, writing));
     let keys: Vec<Keys> = keys.collect::<Option<_>>()?;
     let (mut limbs, mut root, mut root_turns, mut boxes) = (Vec::new(), None, false, 0);
@@ -49,10 +49,10 @@ pub(super) fn displacement(ground: &Ground, plan: &ClipPlan, writing: Writing) -
     Some(largest_displacement(&Chain { root, limbs, root_turns, length }))
 }
 
-/// The times that all moves share; none if there are too many.
-fn grid(when: &When) -> Option<Vec<f32>> {
+/// The times that so many moves share; none if there are too many keys.
+fn grid(when: &When, moves: usize) -> Option<Vec<f32>> {
     match when {
-        When::Grid { object, .. } => (object.len() <= MOST_KEYS)
+        When::Grid { object, .. } => (object.len() * moves <= MOST_KEYS)
             .then(|| (0..object.chunks()).flat_map(|chunk| object.chunk(chunk).1).collect()),
         When::Chosen { object, .. } => {
             let all: usize = object.iter().map(|chosen| chosen.times.len()).sum();

@@ -310,8 +310,9 @@ impl<'a> Plan<'a> {
         Ok(facts.map(|(clip, found)| self.facts(clip, layout, found)).collect())
     }
 
-    /// An upper bound of how far a corner of the chain can be from where it should be: what
-    /// was found, or what the rotations are off, each of which turns all that hangs below.
+    /// An upper bound of how far a corner of the chain can be from where it should be: the
+    /// smaller of what was found and of what the rotations are off, each of which turns all
+    /// that hangs below.
     fn displacement(
         &self,
         plan: &ClipPlan,
@@ -325,13 +326,11 @@ impl<'a> Plan<'a> {
         let sum = |degrees: &mut dyn Iterator<Item = Option<f64>>| -> Option<f64> {
             turns().zip(degrees).map(|(turn, degrees)| degrees.map(|x| x.to_radians() * reach(turn))).sum()
         };
-        let off = match corners {
-            Some(corners) => corners + sum(&mut late.degrees.iter().copied())? + late.units,
-            None => {
-                let turned = sum(&mut facts.tracks.iter().map(|track| track.deviation))?;
-                turned + facts.deviation_units.unwrap_or(0.0)
-            }
-        };
+        let seen =
+            corners.and_then(|corners| Some(corners + sum(&mut late.degrees.iter().copied())? + late.units));
+        let turned = sum(&mut facts.tracks.iter().map(|track| track.deviation));
+        let summed = turned.map(|turned| turned + facts.deviation_units.unwrap_or(0.0));
+        let off = seen.into_iter().chain(summed).reduce(f64::min)?;
         (!facts.tracks.is_empty()).then(|| facts::rounded_up(off))
     }
 
