@@ -9,6 +9,7 @@
 mod cubic;
 mod curve;
 mod dense;
+mod pace;
 mod proof;
 mod reach;
 mod search;
@@ -155,6 +156,7 @@ fn reduce<C: Curve<Value: Value<Stored = [f32; N]>>, const N: usize>(
         return Ok(written(curve, &keys, unit));
     }
     let stuck = |Stuck(time)| Error::Times { time, tolerance: asked };
+    pace::check(curve).map_err(stuck)?;
     let found = |limits: Limits| {
         let keys = search::fewest(curve, &stops, limits)?;
         proof::prove(curve, &keys, tolerance, NEGLIGIBLE * tolerance)

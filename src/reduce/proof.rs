@@ -6,6 +6,7 @@
 //! largest distance is measured.
 
 use super::curve::Curve;
+use super::pace;
 use super::reach::Key;
 use super::search::Stuck;
 use super::value::{OtherBlend, Step, Value};
@@ -51,10 +52,15 @@ pub(super) fn prove<C: Curve>(
             return Err(Stuck(f64::from(pair[0].time)));
         }
     }
+    let last = keys[keys.len() - 1];
+    let beyond = pace::beyond(curve, last.time, last.value);
+    if beyond > tolerance {
+        return Err(Stuck(f64::from(last.time)));
+    }
     Ok(Proven {
         keys: proven,
-        deviation: (proof.linear.bound() + proof.uneven[0]).min(tolerance),
-        other: proof.other.bound() + proof.uneven[1],
+        deviation: (proof.linear.bound() + proof.uneven[0]).min(tolerance).max(beyond),
+        other: (proof.other.bound() + proof.uneven[1]).max(beyond),
         moved: proof.moved,
     })
 }

@@ -16,7 +16,7 @@ pub(crate) use hermite::Hermite;
 
 use super::search::Stuck;
 use super::value::{Numbers, Value};
-use super::{Curve, Error, Facts, HALF_DEGREE, NEGLIGIBLE, Options, STEP_SLACK, check, still, stops};
+use super::{Curve, Error, Facts, HALF_DEGREE, NEGLIGIBLE, Options, STEP_SLACK, check, pace, still, stops};
 use crate::math::Quat;
 use search::{Limits, Piece};
 
@@ -65,6 +65,7 @@ fn reduce<C: Curve<Value: Flat<N>>, const N: usize>(
         return Ok(CubicKeys { times: vec![key.time], values: vec![[zero, key.stored, zero]], facts });
     }
     let stuck = |Stuck(time)| Error::Times { time, tolerance: options.tolerance };
+    pace::check(curve).map_err(stuck)?;
     let pieces = search::fewest(curve, &stops, limits).map_err(stuck)?;
     let proven = proof::prove(curve, pieces, limits, negligible).map_err(stuck)?;
     let longest = proven.pieces.iter().filter(|piece| !on_ramp(curve, piece)).map(way::<C::Value, N>);

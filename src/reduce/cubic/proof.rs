@@ -9,6 +9,7 @@ use super::hermite::{Flat, Hermite};
 use super::search::{Limits, Piece, fit};
 use crate::curve::Rates;
 use crate::reduce::curve::Curve;
+use crate::reduce::pace;
 use crate::reduce::proof::bound_part;
 use crate::reduce::search::Stuck;
 use crate::reduce::value::{Numbers, Value};
@@ -43,7 +44,12 @@ pub(super) fn prove<C: Curve<Value: Flat<N>>, const N: usize>(
         proof.interval(piece, HALVINGS)?;
     }
     let Proof { worst, mut proven, .. } = proof;
-    proven.deviation = worst.bound().min(limits.tolerance);
+    let last = proven.pieces[proven.pieces.len() - 1].to;
+    let beyond = pace::beyond(curve, last.time, C::Value::read(last.value));
+    if beyond > limits.tolerance {
+        return Err(Stuck(f64::from(last.time)));
+    }
+    proven.deviation = worst.bound().min(limits.tolerance).max(beyond);
     Ok(proven)
 }
 

@@ -152,8 +152,11 @@ fn furthest<C: Curve<Value: Flat<N>>, const N: usize>(
     let mut best: Option<Piece<N>> = None;
     let (mut good, mut bad, mut h) = (0.0, f64::INFINITY, whole);
     let mut may_step = true;
+    // Reaches change little from key to key; where they do change, they do by much.
+    let mut growth: f64 = 1.1;
     loop {
-        let time = ((start + h) as f32).clamp(from.time.next_up(), stop);
+        let next = best.map_or(from.time, |piece| piece.to.time).next_up();
+        let time = ((start + h) as f32).clamp(next, stop);
         h = f64::from(time) - start;
         let (piece, way, serves) = tried(curve, limits, from, time);
         // What turns steadily is a step away at:
@@ -163,8 +166,8 @@ fn furthest<C: Curve<Value: Flat<N>>, const N: usize>(
             if time == stop || way >= limits.step || bad <= CLOSE * good {
                 return Ok(piece);
             }
-            // Reaches change little from key to key.
-            h = (1.1 * good).min(0.5 * (good + bad));
+            h = (growth * good).min(0.5 * (good + bad));
+            growth = (growth * growth).min(4.0);
         } else {
             if time == from.time.next_up() {
                 return Err(Stuck(start));
@@ -179,7 +182,8 @@ fn furthest<C: Curve<Value: Flat<N>>, const N: usize>(
                 _ => 0.5 * (good + bad),
             };
         }
-        if let Some(piece) = best.filter(|piece| bad <= CLOSE * good || (start + h) as f32 <= piece.to.time) {
+        let no_float_between = |piece: &Piece<N>| start + bad <= f64::from(piece.to.time.next_up());
+        if let Some(piece) = best.filter(|piece| bad <= CLOSE * good || no_float_between(piece)) {
             return Ok(piece);
         }
     }
