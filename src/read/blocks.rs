@@ -3,7 +3,7 @@
 use std::io::{self, Read};
 
 /// How much is read at a time.
-const BLOCK: usize = 4 << 20;
+const BLOCK: usize = 2 << 20;
 
 /// Some whole lines of an input.
 pub(super) struct Block {

@@ -69,6 +69,10 @@ pub(super) fn start<R: Read + Send>(
         reader.strip_mark(first)?;
     }
     while let Some(Block { text, line }) = block {
+        if reader.is_under_way() {
+            reader.follow(Block { text, line }, blocks)?;
+            break;
+        }
         // The next block is read while this one is parsed.
         let (taken, next) = rayon::join(|| reader.take(&text, line), || blocks.next());
         match taken {
@@ -103,6 +107,18 @@ enum Stop {
     /// The header says that these are no keyframes: the header, and where in the block
     /// its line begins.
     Other(Box<kind::Header>, usize),
+}
+
+/// A row that does not fit; where it has the wrong count of numbers, how many it has.
+struct Unfit {
+    refusal: Box<Refusal>,
+    count: Option<usize>,
+}
+
+impl From<Refusal> for Unfit {
+    fn from(refusal: Refusal) -> Unfit {
+        Unfit { refusal: Box::new(refusal), count: None }
+    }
 }
 
 impl From<Refusal> for Stop {
@@ -164,6 +180,52 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
+    /// Whether there are rows that fit the header.
+    fn is_under_way(&self) -> bool {
+        !self.times.is_empty()
+    }
+
+    /// Takes all blocks from one on: each is parsed while the one before it is appended and
+    /// the one after it is read.
+    fn follow<R: Read + Send>(&mut self, first: Block, blocks: &mut Blocks<R>) -> Result<(), Error> {
+        let form = self.form().expect("rows stand under a header");
+        let (mut block, mut parsed) = (Some(first), None);
+        loop {
+            let parse = || block.as_ref().map(|block| rows::parse(&block.text, block.line, form));
+            let append = || self.append_all(parsed.take(), form);
+            let (appended, (rows, next)) = rayon::join(append, || rayon::join(parse, || blocks.next()));
+            if let Some(text) = appended? {
+                blocks.reuse(text);
+            }
+            let (Some(now), Some(rows)) = (block, rows) else { return Ok(()) };
+            block = next.map_err(|error| Error::Io { source_name: self.source_name.to_owned(), error })?;
+            if block.is_none() {
+                self.remember_last_line(&now.text, now.line);
+            }
+            parsed = Some((now, rows));
+        }
+    }
+
+    /// Appends what was parsed of a block, if there is one, and returns its room.
+    fn append_all(
+        &mut self,
+        parsed: Option<(Block, Vec<(usize, Rows)>)>,
+        form: Form,
+    ) -> Result<Option<Vec<u8>>, Refusal> {
+        let Some((Block { text, line }, parts)) = parsed else { return Ok(None) };
+        for (_, rows) in parts {
+            self.append(rows, &text, line, form).map_err(|unfit| *unfit.refusal)?;
+        }
+        Ok(Some(text))
+    }
+
+    /// What rows must look like, as the header says.
+    fn form(&self) -> Option<Form> {
+        let (header, ..) = &self.header.as_ref()?;
+        let order = self.order.or(header.order).unwrap_or_default();
+        Some(Form { boxes: header.boxes, order })
+    }
+
     fn take(&mut self, text: &[u8], first_line: usize) -> Result<(), Stop> {
         let (from, skipped) =
             if self.header.is_none() { self.find_header(text, first_line)? } else { (0, 0) };
@@ -171,13 +233,14 @@ impl<'a> Reader<'a> {
             return Err(Stop::Other(header, start));
         }
         self.remember_last_line(text, first_line);
-        let Some((header, ..)) = self.header else { return Ok(()) };
-        let order = self.order.or(header.order).unwrap_or_default();
-        let form = Form { boxes: header.boxes, order };
+        let Some(form) = self.form() else { return Ok(()) };
         let first_line = first_line + skipped;
         let text = &text[from..];
         for (_, rows) in rows::parse(text, first_line, form) {
-            self.append(rows, text, first_line, form)?;
+            self.append(rows, text, first_line, form).map_err(|Unfit { refusal, count }| match count {
+                Some(count) if !self.is_under_way() => Stop::Miscounted(refusal, count),
+                _ => Stop::Refused(refusal),
+            })?;
         }
         Ok(())
     }
@@ -227,7 +290,7 @@ impl<'a> Reader<'a> {
         self.refuse(line, text, offset, problem.hint(header::advice(words(text).count())))
     }
 
-    fn append(&mut self, rows: Rows, text: &[u8], first_line: usize, form: Form) -> Result<(), Stop> {
+    fn append(&mut self, rows: Rows, text: &[u8], first_line: usize, form: Form) -> Result<(), Unfit> {
         if self.tracks.is_empty() && !rows.times.is_empty() {
             self.start = rows.times[0];
             self.tracks = vec![Vec::new(); form.boxes];
@@ -251,10 +314,7 @@ impl<'a> Reader<'a> {
         let line = lines(&text[wrong.line_start..]).next().map_or(b"".as_slice(), |(_, line)| line);
         let count = words(line).count();
         let refusal = self.refuse(first_line + wrong.line, line, wrong.offset, wrong.problem);
-        if wrong.miscounted && self.times.is_empty() {
-            return Err(Stop::Miscounted(Box::new(refusal), count));
-        }
-        Err(refusal.into())
+        Err(Unfit { refusal: Box::new(refusal), count: wrong.miscounted.then_some(count) })
     }
 
     fn push_time(&mut self, time: f64, text: &[u8], line: usize) -> Result<(), Refusal> {
@@ -343,6 +403,7 @@ fn disagreement(header: Header, rows: usize, count: usize) -> Problem {
 mod tests {
     use super::*;
     use crate::clip::Body;
+    use crate::math::Quat;
 
     fn read(text: impl AsRef<[u8]>) -> Result<Keyframes, Error> {
         keyframes("clip.dat", text.as_ref(), None)
@@ -350,6 +411,47 @@ mod tests {
 
     fn refusal(text: impl AsRef<[u8]>) -> String {
         read(text).unwrap_err().to_string()
+    }
+
+    /// Rows of several blocks, the first in line 2.
+    fn long(rows: usize) -> String {
+        let row = |i: usize| format!("{i} {:.9} {:.9} 0 0\n", (i as f64).cos(), (i as f64).sin());
+        "# 1 2\n".to_owned() + &(0..rows).map(row).collect::<String>()
+    }
+
+    #[test]
+    fn blocks_are_appended_in_their_order() {
+        let text = long(300_000);
+        assert!(text.len() > 4 * (2 << 20));
+        let clip = read(&text).unwrap().clip;
+        assert_eq!(clip.times.len(), 300_000);
+        assert!(clip.times.iter().enumerate().all(|(i, &t)| t == i as f64));
+        for i in [0, 77_777, 150_000, 299_999] {
+            let expected = Quat::from_wxyz([(i as f64).cos(), (i as f64).sin(), 0.0, 0.0]);
+            assert!(clip.tracks[0][i].angle_to(expected) < 1e-8);
+            assert_eq!(clip.line(i), i + 2);
+        }
+    }
+
+    #[test]
+    fn first_row_that_is_wrong_is_named_in_whatever_block() {
+        let text = long(300_000);
+        for (row, wrong, words) in [
+            (299_999, "1 0 0 0", "expected 5 numbers"),
+            (150_000, "0 1 0 0 0", "later than"),
+            (77_777, "77777 1 0 x 0", "expected a number, found 'x'"),
+        ] {
+            let mut lines: Vec<&str> = text.lines().collect();
+            lines[row + 1] = wrong;
+            lines[299_999] = "never looked at";
+            if row == 299_999 {
+                lines.truncate(row + 2);
+                lines[299_999] = "299998 1 0 0 0";
+            }
+            let message = refusal(lines.join("\n"));
+            assert!(message.contains(&format!("clip.dat:{}:", row + 2)), "{message}");
+            assert!(message.contains(words), "{message}");
+        }
     }
 
     #[test]

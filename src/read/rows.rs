@@ -52,7 +52,7 @@ pub(super) struct Wrong {
 }
 
 /// How much text one task parses.
-const TASK: usize = 256 << 10;
+const TASK: usize = 128 << 10;
 
 /// The rows of a text, its parts parsed in parallel; `first_line` numbers the first line
 /// for what is noted along the way.
@@ -180,14 +180,14 @@ pub(super) fn unit(
             Order::Xyzw => "no rotation is '0 0 0 1' in the order x y z w",
         }));
     }
-    let scale = match largest {
-        l if l < 1e-150 => 2f64.powi(700),
-        l if l > 1e150 => 2f64.powi(-700),
-        _ => 1.0,
+    let (scale, back) = match largest {
+        l if l < 1e-150 => (2f64.powi(700), 2f64.powi(-700)),
+        l if l > 1e150 => (2f64.powi(-700), 2f64.powi(700)),
+        _ => (1.0, 1.0),
     };
     let scaled = Quat { w: q.w * scale, v: q.v * scale };
     let norm = scaled.dot(scaled).sqrt();
-    oddities.measure(norm / scale, line, index);
+    oddities.measure(norm * back, line, index);
     Ok(Quat { w: scaled.w / norm, v: scaled.v * (1.0 / norm) })
 }
 
