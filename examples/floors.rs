@@ -5,15 +5,19 @@
 //! cargo run --release --example floors -- read long.dat
 //! cargo run --release --example floors -- parse long.dat
 //! cargo run --release --example floors -- write long.glb
+//! cargo run --release --example floors -- numbers long.dat
 //! cargo run --release --example floors -- keyframes long.dat
 //! ```
 //!
 //! `read` reads a file once in blocks, `parse` runs a bare loop of fast-float2 over it on
 //! one core and adds the numbers up, `write` writes a new file of the same length as the
-//! one that is named, beside it, and waits for the disk. `keyframes` is no floor but what
-//! dat2glb makes of the same bytes as `parse`: checked keys, and the hash of the file; with
-//! RAYON_NUM_THREADS=1 on one core too. Each prints its own seconds, without the start of the
-//! process; `parse` and `keyframes` without reading.
+//! one that is named, beside it, and waits for the disk. No floors but dat2glb's own beside `parse`
+//! are `numbers`, the same loop with its parser of numbers, and `keyframes`, which makes checked
+//! keys of the bytes and their hash; with RAYON_NUM_THREADS=1 on one core too. Each prints its own
+//! seconds, without the start of the process; those of bytes without reading.
+
+#[path = "../src/read/decimal.rs"]
+mod decimal;
 
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -24,7 +28,8 @@ fn main() -> io::Result<()> {
     let [what, path] = words.as_slice() else { return usage() };
     let seconds = match what.as_str() {
         "read" => read(path)?,
-        "parse" => parse(&std::fs::read(path)?),
+        "parse" => parse(&std::fs::read(path)?, |text| fast_float2::parse_partial(text).ok()),
+        "numbers" => parse(&std::fs::read(path)?, number),
         "write" => write(path)?,
         "keyframes" => keyframes(&std::fs::read(path)?),
         _ => return usage(),
@@ -34,7 +39,7 @@ fn main() -> io::Result<()> {
 }
 
 fn usage() -> io::Result<()> {
-    eprintln!("usage: floors read|parse|write|keyframes FILE");
+    eprintln!("usage: floors read|parse|write|numbers|keyframes FILE");
     std::process::exit(2);
 }
 
@@ -45,21 +50,29 @@ fn read(path: &str) -> io::Result<f64> {
     Ok(start.elapsed().as_secs_f64())
 }
 
-fn parse(text: &[u8]) -> f64 {
+/// Adds up the numbers of all lines after the first.
+#[inline(always)]
+fn parse(text: &[u8], number: impl Fn(&[u8]) -> Option<(f64, usize)>) -> f64 {
     let start = Instant::now();
     let body = text.iter().position(|&byte| byte == b'\n').map_or(text, |end| &text[end..]);
     let (mut sum, mut at) = (0.0, 0);
     while at < body.len() {
-        match fast_float2::parse_partial::<f64, _>(&body[at..]) {
-            Ok((value, length)) => {
+        match number(&body[at..]) {
+            Some((value, length)) => {
                 sum += value;
                 at += length;
             }
-            Err(_) => at += 1,
+            None => at += 1,
         }
     }
     std::hint::black_box(sum);
     start.elapsed().as_secs_f64()
+}
+
+/// A number as dat2glb's reader takes it.
+#[inline(always)]
+fn number(text: &[u8]) -> Option<(f64, usize)> {
+    decimal::plain(text, 0).or_else(|| fast_float2::parse_partial(text).ok())
 }
 
 fn keyframes(text: &[u8]) -> f64 {

@@ -140,13 +140,7 @@ fn keys_by_every_scheme_and_all_ends() {
         for &scheme in Scheme::EVERY {
             let mut outputs = 0;
             let by_rate = Ends::ALL.iter().map(|&ends| (ends, samplings()[0]));
-            // A search for the fewest keys takes seconds a scheme where little is optimised.
-            let searched = matches!(scheme, Scheme::Slerp | Scheme::Bessel);
-            let others = match name.contains("year") {
-                true => 2..3,
-                false if searched => 3..4,
-                false => 0..0,
-            };
+            let others = if name.contains("year") { 2..5 } else { 3..5 };
             let otherwise = others.map(|i| (Ends::Natural, samplings()[i]));
             for (ends, sampling) in by_rate.chain(otherwise) {
                 let shape = Shape { ends, tcb, ..Shape::default() };
