@@ -184,7 +184,8 @@ impl<'a, C: Curve> Ahead<'a, C> {
             if next <= t {
                 continue;
             }
-            if !self.push(next) {
+            // Beyond the longest step there is nothing to see.
+            if !self.push(next) || self.is_stepped_over() {
                 return Some(next - self.start);
             }
             t = next;
@@ -193,6 +194,12 @@ impl<'a, C: Curve> Ahead<'a, C> {
             }
         }
         None
+    }
+
+    /// Whether the last sample is further off than a step may be.
+    fn is_stepped_over(&self) -> bool {
+        let longest = self.limits.step + self.limits.step_slack;
+        self.samples.last().is_some_and(|(_, y)| y.length() > longest)
     }
 
     /// Takes one more sample if one interval can serve it too.
