@@ -116,9 +116,9 @@ impl Worst {
         self.bound.max(self.found)
     }
 
-    /// Whether a bound is near enough to the worst that was found.
+    /// Whether a bound is near enough to the worst that was found, or changes nothing.
     pub(crate) fn accepts(&self, bound: f64) -> bool {
-        bound <= (SLACK * self.found.max(self.negligible)).min(self.limit)
+        bound <= (SLACK * self.found.max(self.negligible)).min(self.limit) || bound <= self.bound
     }
 
     /// Takes the bound of a stretch that is done.
