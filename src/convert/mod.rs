@@ -21,7 +21,7 @@ use crate::curve::{self, Scheme};
 use crate::moves::{Ground, Move, Mover};
 use crate::path::{Kind, PathEnds};
 use crate::read::Order;
-use crate::sample::{Fps, Timeline, TooFine, Writing};
+use crate::sample::{Fps, Timeline, TooFine, Writing, keys_apart};
 use crate::write::{Animation, Bin, Buffer, Colour, Glb, LARGEST_GLB, Scene, document, glb_size};
 use chosen::Chosen;
 use facts::{Found, Late};
@@ -98,6 +98,12 @@ impl<'a> ClipPlan<'a> {
         let (object, cameras) = (ground.moves(scheme), ground.camera_moves(scheme));
         let held = |(_, a_move): &(Mover, Move)| matches!(a_move, Move::Keys(motion) if motion.is_step());
         let some_are_held = object.iter().any(held);
+        // Whatever is asked for, what is held has its own keys.
+        let mut times = object.iter().filter_map(|(_, a_move)| match a_move {
+            Move::Keys(motion) if motion.is_step() => Some(motion.times()),
+            _ => None,
+        });
+        times.try_for_each(keys_apart)?;
         let by_tolerance = matches!(options.sampling, Sampling::Fewest(_));
         if ground.stream().count > 1 && (some_are_held || by_tolerance) {
             return Err(Unsampled::Copies(if by_tolerance { "--tolerance" } else { "--scheme step" }));
@@ -192,7 +198,7 @@ impl<'a> Plan<'a> {
         let scene = scene::scene(ground, options.path_colour);
         let clip = |&scheme: &Scheme| {
             ClipPlan::new(ground, scheme, options).map_err(|error| match error {
-                Unsampled::TooFine(error) => too_fine(error, ground, source_name),
+                Unsampled::TooFine(error) => too_fine(error, ground, source_name, scheme),
                 Unsampled::Fewest(Unkept { error, unit, reserve, shared }) => {
                     Error::Fewest { source_name: source_name.to_owned(), error, unit, reserve, shared }
                 }
@@ -350,13 +356,13 @@ impl<'a> Plan<'a> {
     }
 }
 
-fn too_fine(error: TooFine, ground: &Ground, source_name: &str) -> Error {
+fn too_fine(error: TooFine, ground: &Ground, source_name: &str, scheme: Scheme) -> Error {
     let source_name = source_name.to_owned();
     match (error, &ground.inputs().keyframes, &ground.inputs().path) {
         (TooFine::Keys { key }, Some(keyframes), None) => {
             let clip = &keyframes.clip;
             let lines = (clip.line(key), clip.line(key + 1));
-            let key_times = clip.duration() as f32 > 0.0;
+            let key_times = clip.duration() as f32 > 0.0 && !scheme.is_step();
             Error::KeysTooClose { source_name, lines, seconds: clip.times[key], key_times }
         }
         (other, ..) => Error::TooFine(source_name, other),

@@ -165,15 +165,22 @@ impl<'a> Timeline<'a> {
 /// that float32 tells apart.
 const LONGEST: f64 = 1e18;
 
+/// Whether float32 can tell keys apart.
+pub fn keys_apart(keys: &[f64]) -> Result<(), TooFine> {
+    match keys.windows(2).position(|pair| pair[0] as f32 == pair[1] as f32) {
+        Some(key) => Err(TooFine::Keys { key }),
+        None => Ok(()),
+    }
+}
+
 /// Whether float32 can tell the samples apart.
 fn check(keys: &[f64], fps: Fps, key_times: bool) -> Result<(), TooFine> {
     let last = keys[keys.len() - 1];
     if last > LONGEST {
         return Err(TooFine::TooLong);
     }
-    let close = keys.windows(2).position(|pair| pair[0] as f32 == pair[1] as f32);
-    if let Some(key) = close.filter(|_| key_times) {
-        return Err(TooFine::Keys { key });
+    if key_times {
+        keys_apart(keys)?;
     }
     if last as f32 == 0.0 {
         return Err(TooFine::Keys { key: 0 });

@@ -215,6 +215,24 @@ fn what_makes_no_sense_is_refused() {
 }
 
 #[test]
+fn keys_that_float32_cannot_tell_apart_are_refused() {
+    let (folder, output) = output();
+    let input = folder.path().join("late.dat");
+    // From 8,047,188,000 s on float32 numbers are 512 s apart.
+    std::fs::write(&input, "# 1 2\n0 1 0 0 0\n8047188000 0.6 0.8 0 0\n8047188000.25 0 1 0 0\n").unwrap();
+    let refused = |flags: &[&str], words: &[&str]| {
+        let said = run(["convert", text(&input), "-o", text(&output)].iter().chain(flags)).exits(1);
+        assert!(!said.says(words).stderr.contains("--no-key-times"));
+        assert!(!output.exists());
+    };
+    let held = ["--scheme", "step"];
+    refused(&[&held[..], &["--tolerance", "1"]].concat(), &["lines 3 and 4", "leave one of them out"]);
+    refused(&[&held[..], &["--fps", "1/1000", "--no-key-times"]].concat(), &["leave one of them out"]);
+    refused(&[&held[..], &["--fps", "1/1000"]].concat(), &["leave one of them out"]);
+    refused(&["--tolerance", "1"], &["float32 times cannot follow the curve"]);
+}
+
+#[test]
 fn without_a_bound_nothing_is_stated() {
     let (_folder, output) = output();
     let input = keyframes("chain-even");
