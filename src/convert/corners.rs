@@ -9,9 +9,10 @@ use crate::write::Interpolation;
 use rayon::prelude::*;
 use std::borrow::Cow;
 
-/// Clips of more rotations are bounded by the sum of what each of them is off: looking at all
-/// at once would take longer than making them.
-const MOST_KEYS: usize = 1 << 18;
+/// Clips of more samples, or of more rotations, are bounded by the sum of what each rotation is
+/// off: looking at all at once would take longer than making them.
+const MOST_SAMPLES: usize = 1 << 16;
+const MOST_ROTATIONS: usize = 1 << 18;
 
 /// What a move is played by.
 type Keys<'p> = (&'p [f32], Cow<'p, Values>);
@@ -49,14 +50,16 @@ pub(super) fn displacement(ground: &Ground, plan: &ClipPlan, writing: Writing) -
     Some(largest_displacement(&Chain { root, limbs, root_turns, length }))
 }
 
-/// The times that so many moves share; none if there are too many keys.
+/// The times that so many moves share; none if there is too much to look at.
 fn grid(when: &When, moves: usize) -> Option<Vec<f32>> {
     match when {
-        When::Grid { object, .. } => (object.len() * moves <= MOST_KEYS)
-            .then(|| (0..object.chunks()).flat_map(|chunk| object.chunk(chunk).1).collect()),
+        When::Grid { object, .. } => {
+            let few = object.len() <= MOST_SAMPLES && object.len() * moves <= MOST_ROTATIONS;
+            few.then(|| (0..object.chunks()).flat_map(|chunk| object.chunk(chunk).1).collect())
+        }
         When::Chosen { object, .. } => {
             let all: usize = object.iter().map(|chosen| chosen.times.len()).sum();
-            (all <= MOST_KEYS).then(Vec::new)
+            (all <= MOST_SAMPLES).then(Vec::new)
         }
     }
 }

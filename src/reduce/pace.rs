@@ -135,6 +135,6 @@ mod tests {
         assert_eq!(checked(&[0.0, 1e-6, 2e-6, 3e-6], Scheme::Bessel, 1.5), Ok(()));
         assert_eq!(checked(&[0.0, 1.0, 1.5, 2.0, 3.0], Scheme::Bessel, 3.0), Ok(()));
         // Keys that float32 does not tell apart are not for this to judge.
-        assert_eq!(checked(&[3600.0, 3600.000_001, 3600.000_002], Scheme::Slerp, 0.3), Ok(()));
+        assert_eq!(checked(&[3_600.0, 3_600.000_001, 3_600.000_002], Scheme::Slerp, 0.3), Ok(()));
     }
 }

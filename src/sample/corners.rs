@@ -278,7 +278,7 @@ impl Frame {
         self.bends[0] += bend + self.speeds[0] * speed;
         self.bends[1] += self.speeds[1] * plays;
         for k in 0..2 {
-            self.turned[k] = self.turned[k] * moment.turned[k];
+            self.turned[k] *= moment.turned[k];
             self.spins[k] += self.turned[k] * moment.spins[k];
             self.speeds[k] = self.spins[k].length() + half * self.bends[k];
         }
