@@ -21,7 +21,7 @@ use crate::curve::{self, Scheme};
 use crate::moves::{Ground, Move, Mover};
 use crate::path::{Kind, PathEnds};
 use crate::read::Order;
-use crate::sample::{Fps, Timeline, TooFine, Writing, keys_apart};
+use crate::sample::{self, Fps, Timeline, TooFine, Writing};
 use crate::write::{Animation, Bin, Buffer, Colour, Glb, LARGEST_GLB, Scene, document, glb_size};
 use chosen::Chosen;
 use facts::{Found, Late};
@@ -98,12 +98,13 @@ impl<'a> ClipPlan<'a> {
         let (object, cameras) = (ground.moves(scheme), ground.camera_moves(scheme));
         let held = |(_, a_move): &(Mover, Move)| matches!(a_move, Move::Keys(motion) if motion.is_step());
         let some_are_held = object.iter().any(held);
+        sample::fits(ground.duration())?;
         // Whatever is asked for, what is held has its own keys.
         let mut times = object.iter().filter_map(|(_, a_move)| match a_move {
             Move::Keys(motion) if motion.is_step() => Some(motion.times()),
             _ => None,
         });
-        times.try_for_each(keys_apart)?;
+        times.try_for_each(sample::keys_apart)?;
         let by_tolerance = matches!(options.sampling, Sampling::Fewest(_));
         if ground.stream().count > 1 && (some_are_held || by_tolerance) {
             return Err(Unsampled::Copies(if by_tolerance { "--tolerance" } else { "--scheme step" }));

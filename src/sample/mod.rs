@@ -21,5 +21,5 @@ pub use encoding::{Encoding, code};
 pub use fps::{Fps, NotARate};
 pub use rotations::{Rotation, TrackFacts, Writing, rotations};
 pub use steps::Steps;
-pub use timeline::{Timeline, TooFine, keys_apart};
+pub use timeline::{Timeline, TooFine, fits, keys_apart};
 pub use translations::{Travel, translations};

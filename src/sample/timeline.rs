@@ -165,6 +165,11 @@ impl<'a> Timeline<'a> {
 /// that float32 tells apart.
 const LONGEST: f64 = 1e18;
 
+/// Whether a clip of so many seconds is short enough for float32.
+pub fn fits(duration: f64) -> Result<(), TooFine> {
+    if duration > LONGEST { Err(TooFine::TooLong) } else { Ok(()) }
+}
+
 /// Whether float32 can tell keys apart.
 pub fn keys_apart(keys: &[f64]) -> Result<(), TooFine> {
     match keys.windows(2).position(|pair| pair[0] as f32 == pair[1] as f32) {
@@ -176,9 +181,7 @@ pub fn keys_apart(keys: &[f64]) -> Result<(), TooFine> {
 /// Whether float32 can tell the samples apart.
 fn check(keys: &[f64], fps: Fps, key_times: bool) -> Result<(), TooFine> {
     let last = keys[keys.len() - 1];
-    if last > LONGEST {
-        return Err(TooFine::TooLong);
-    }
+    fits(last)?;
     if key_times {
         keys_apart(keys)?;
     }

@@ -16,6 +16,9 @@ const DEPTH: u32 = 14;
 const HALVINGS: u32 = 1 << 15;
 const SHARE: u32 = 16;
 const FEWEST_HALVINGS: u32 = 16;
+/// The same where a limit is to be proven, which can be close to what there is: as many as all
+/// halves of a part.
+const PROVING_HALVINGS: u32 = SHARE << DEPTH;
 /// What tighter rates can be hoped to leave of known ones.
 const HOPE: f64 = 0.5;
 
@@ -91,7 +94,7 @@ impl Worst {
     /// Nothing is known; stretches are refined until they are within a limit, or something
     /// beyond it is found.
     pub(crate) fn proving(limit: f64) -> Worst {
-        Worst { found: limit, bound: 0.0, negligible: 0.0, limit, halvings: HALVINGS }
+        Worst { found: limit, bound: 0.0, negligible: 0.0, limit, halvings: PROVING_HALVINGS }
     }
 
     /// One stretch more, refined until its bound is within a limit, or something beyond

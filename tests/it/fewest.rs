@@ -230,6 +230,10 @@ fn keys_that_float32_cannot_tell_apart_are_refused() {
     refused(&[&held[..], &["--fps", "1/1000", "--no-key-times"]].concat(), &["leave one of them out"]);
     refused(&[&held[..], &["--fps", "1/1000"]].concat(), &["leave one of them out"]);
     refused(&["--tolerance", "1"], &["float32 times cannot follow the curve"]);
+    std::fs::write(&input, "# 1 2\n0 1 0 0 0\n1 0.6 0.8 0 0\n2e50 0 1 0 0\n").unwrap();
+    for scheme in ["step", "natural-c2", "barry-goldman"] {
+        refused(&["--scheme", scheme, "--tolerance", "1"], &["longer than 1e18 s"]);
+    }
 }
 
 #[test]
