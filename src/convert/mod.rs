@@ -17,7 +17,7 @@ pub use facts::{CameraFacts, ClipFacts};
 pub use fewest::Fewest;
 
 use crate::clip::{Clip, Through, Warning};
-use crate::curve::{self, Scheme};
+use crate::curve::{self, Motion, Scheme};
 use crate::moves::{Ground, Move, Mover};
 use crate::path::{Kind, PathEnds};
 use crate::read::Order;
@@ -96,15 +96,17 @@ enum When<'a> {
 impl<'a> ClipPlan<'a> {
     fn new(ground: &'a Ground<'a>, scheme: Scheme, options: &Options) -> Result<ClipPlan<'a>, Unsampled> {
         let (object, cameras) = (ground.moves(scheme), ground.camera_moves(scheme));
-        let held = |(_, a_move): &(Mover, Move)| matches!(a_move, Move::Keys(motion) if motion.is_step());
-        let some_are_held = object.iter().any(held);
         sample::fits(ground.duration())?;
         // Whatever is asked for, what is held has its own keys.
-        let mut times = object.iter().filter_map(|(_, a_move)| match a_move {
-            Move::Keys(motion) if motion.is_step() => Some(motion.times()),
-            _ => None,
-        });
-        times.try_for_each(sample::keys_apart)?;
+        let held: Vec<&Motion> = object
+            .iter()
+            .filter_map(|(_, a_move)| match a_move {
+                Move::Keys(motion) if motion.is_step() => Some(motion),
+                _ => None,
+            })
+            .collect();
+        held.iter().try_for_each(|motion| sample::keys_apart(motion.times()))?;
+        let some_are_held = !held.is_empty();
         let by_tolerance = matches!(options.sampling, Sampling::Fewest(_));
         if ground.stream().count > 1 && (some_are_held || by_tolerance) {
             return Err(Unsampled::Copies(if by_tolerance { "--tolerance" } else { "--scheme step" }));

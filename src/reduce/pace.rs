@@ -23,18 +23,18 @@ const SURE: f64 = 1.1;
 
 /// Refuses a curve that turns too fast somewhere between knots that are many float32 numbers
 /// apart. The ramps of jumps may be as short as they like.
-pub(super) fn check(curve: &impl Curve) -> Result<(), Stuck> {
+pub(super) fn check<C: Curve>(curve: &C) -> Result<(), Stuck> {
     let between = |pair: &&[f64]| {
         let ramp = curve.ramps().iter().any(|&(from, to)| from <= pair[0] && pair[1] <= to);
         !ramp && pair[1] - pair[0] > MANY * spacing(pair[1])
     };
     for pair in curve.knots().windows(2).filter(between) {
         let known = curve.rates(pair[0], pair[1]);
-        if known.is_none_or(|rates| !is_too_fast(curve, pair[1], rates.speed)) {
+        if known.is_none_or(|rates| !is_too_fast::<C>(pair[1], rates.speed)) {
             continue;
         }
         let times = PROBES.map(|u| pair[0] + u * (pair[1] - pair[0]));
-        if let Some(t) = times.into_iter().find(|&t| is_too_fast(curve, t, speed(curve, t) / SURE)) {
+        if let Some(t) = times.into_iter().find(|&t| is_too_fast::<C>(t, speed(curve, t) / SURE)) {
             return Err(Stuck(t));
         }
     }
@@ -58,7 +58,7 @@ pub(super) fn beyond<C: Curve>(curve: &C, last: f32, shown: C::Value) -> f64 {
 }
 
 /// Whether so fast a curve goes too far between the float32 numbers at a time.
-fn is_too_fast<C: Curve>(_: &C, t: f64, speed: f64) -> bool {
+fn is_too_fast<C: Curve>(t: f64, speed: f64) -> bool {
     speed * spacing(t) > C::Value::LONGEST
 }
 
