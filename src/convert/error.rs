@@ -68,7 +68,10 @@ fn unkept(error: reduce::Error, unit: &str, reserve: f64, shared: bool) -> Strin
         reduce::Error::Tolerance { tolerance, least } => format!(
             "a tolerance of {tolerance:.1e}{unit} is too small: float32 numbers need at least {least:.1e}{unit}"
         ),
-        other => other.to_string(),
+        reduce::Error::Swings { .. } => {
+            return format!("{error}: sample it at a rate (--fps) instead, or take --scheme bessel");
+        }
+        reduce::Error::Times { .. } => error.to_string(),
     };
     let part = if shared { "; it is what --tolerance-distance leaves for one node" } else { "" };
     let coding = if reserve > 0.0 {

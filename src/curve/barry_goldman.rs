@@ -81,18 +81,18 @@ pub(super) struct Pyramid {
     sides: [Side; 2],
 }
 
-impl Pyramid {
-    /// Where the side runs at u from `key`, from which `step` leads to the other key.
-    fn side<S: Scalar>(side: &Side, key: Quat, step: Vec3, u: S) -> Quat<S> {
-        let (k, key) = (S::constant, Quat::constant(key));
-        match side {
+impl Side {
+    /// Where the side runs at u, seen from its key, from which `step` leads to the other key.
+    fn at<S: Scalar>(&self, step: Vec3, u: S) -> Quat<S> {
+        let k = S::constant;
+        match self {
             Side::End(bend) => {
                 let bent = Vec3::constant(*bend) * (u * (k(1.0) - u));
-                key * Quat::exp(Vec3::constant(step) * u + bent)
+                Quat::exp(Vec3::constant(step) * u + bent)
             }
             Side::Line(line) => {
                 let share = (u + k(line.interval)) * k(1.0 / (1.0 + line.interval));
-                between(key * line.beyond(u), key * turn(step, u), share)
+                between(line.beyond(u), turn(step, u), share)
             }
         }
     }
@@ -123,17 +123,18 @@ impl Pyramid {
             })
     }
 
-    /// The curves of both sides at u.
+    /// The curves of both sides at u, seen from the first key.
     fn blends<S: Scalar>(&self, u: S) -> [Quat<S>; 2] {
-        let early = Pyramid::side(&self.sides[0], self.keys[0], self.step, u);
-        [early, Pyramid::side(&self.sides[1], self.keys[1], -self.step, S::constant(1.0) - u)]
+        let [start, end] = self.keys;
+        let late = self.sides[1].at(-self.step, S::constant(1.0) - u);
+        [self.sides[0].at(self.step, u), Quat::constant(start.conjugate() * end) * late]
     }
 }
 
 impl Arc for Pyramid {
     fn at<S: Scalar>(&self, u: S) -> Quat<S> {
         let [early, late] = self.blends(u);
-        between(early, late, u)
+        Quat::constant(self.keys[0]) * between(early, late, u)
     }
 
     /// By interval arithmetic: the formula is too deep for a closed form that is near.

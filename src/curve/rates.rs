@@ -26,6 +26,11 @@ impl Rates {
         Rates { speed: self.speed / duration, acceleration: self.acceleration / (duration * duration) }
     }
 
+    /// Whether these bound anything.
+    pub fn is_finite(self) -> bool {
+        self.speed.is_finite() && self.acceleration.is_finite()
+    }
+
     /// The lower of two bounds of the same.
     pub fn and(self, other: Rates) -> Rates {
         // f64::min takes the number where the other is none.

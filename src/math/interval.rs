@@ -33,8 +33,15 @@ impl Interval {
         Interval { lo: lo - slack(lo), hi: hi + slack(hi) }
     }
 
+    /// The numbers from `lo` to `hi`, which are rounded: an end's float at least further out.
     fn outward(lo: f64, hi: f64) -> Interval {
-        Interval { lo: lo.next_down(), hi: hi.next_up() }
+        // No less than the distance to the next float, which takes longer to find.
+        let ulp = |x: f64| f64::EPSILON * x.abs() + f64::MIN_POSITIVE;
+        Interval { lo: (lo - ulp(lo)).min(f64::MAX), hi: (hi + ulp(hi)).max(f64::MIN) }
+    }
+
+    fn is_finite(self) -> bool {
+        self.lo.is_finite() && self.hi.is_finite()
     }
 
     /// The largest absolute value in the range.
@@ -90,13 +97,14 @@ impl Neg for Interval {
 impl Mul for Interval {
     type Output = Self;
     fn mul(self, b: Self) -> Self {
-        if !self.magnitude().is_finite() || !b.magnitude().is_finite() {
+        if !self.is_finite() || !b.is_finite() {
             return Interval::WHOLE; // 0 · ∞ is no number
         }
-        let products = [self.lo * b.lo, self.lo * b.hi, self.hi * b.lo, self.hi * b.hi];
-        let lo = products.into_iter().fold(f64::INFINITY, f64::min);
-        let hi = products.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        Interval::outward(lo, hi)
+        // Of numbers; f64::min looks for what is none.
+        let min = |a: f64, b: f64| if a < b { a } else { b };
+        let max = |a: f64, b: f64| if a > b { a } else { b };
+        let [p, q, r, s] = [self.lo * b.lo, self.lo * b.hi, self.hi * b.lo, self.hi * b.hi];
+        Interval::outward(min(min(p, q), min(r, s)), max(max(p, q), max(r, s)))
     }
 }
 
@@ -164,6 +172,13 @@ mod tests {
             prop_assert!(holds(a - b, x - y));
             prop_assert!(holds(a * b, x * y));
             prop_assert!(holds(a / b, x / y));
+        }
+
+        #[test]
+        fn ends_are_rounded_outwards(x in proptest::num::f64::ANY) {
+            let out = Interval::outward(x, x);
+            // Beyond the largest number there is nothing but infinity.
+            prop_assert!(x.is_nan() || out.lo <= x.next_down() && out.hi >= x.next_up());
         }
 
         #[test]

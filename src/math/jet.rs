@@ -63,11 +63,11 @@ impl<B: Scalar> Neg for Jet<B> {
 impl<B: Scalar> Mul for Jet<B> {
     type Output = Self;
     fn mul(self, b: Self) -> Self {
-        let two = B::constant(2.0);
+        let both = self.first * b.first;
         Jet {
             value: self.value * b.value,
             first: self.first * b.value + self.value * b.first,
-            second: self.second * b.value + two * self.first * b.first + self.value * b.second,
+            second: self.second * b.value + (both + both) + self.value * b.second,
         }
     }
 }

@@ -28,6 +28,11 @@ pub trait Curve: Sync {
     fn ramps(&self) -> &[(f64, f64)] {
         &[]
     }
+    /// After when the curve jumps, or turns at once by so much that keys had to follow each
+    /// other as closely as can be; none where it does not.
+    fn swings(&self) -> Option<f64> {
+        None
+    }
 }
 
 /// Velocities that differ by less, relatively, do not jump.
@@ -39,6 +44,7 @@ pub struct Turning {
     knots: Vec<f64>,
     corners: Vec<f64>,
     ramp: Option<(f64, f64)>,
+    swings: Option<f64>,
 }
 
 impl Turning {
@@ -60,7 +66,7 @@ impl Turning {
         let mut knots: Vec<f64> = pieces.iter().map(|piece| piece.start).collect();
         knots.push(last);
         let ramp = motion.ramp().map(|start| (start, times[1]));
-        Turning { pieces, knots, corners, ramp }
+        Turning { pieces, knots, corners, ramp, swings: motion.first_swing() }
     }
 
     fn piece(&self, t: f64) -> &Piece {
@@ -100,6 +106,10 @@ impl Curve for Turning {
 
     fn ramps(&self) -> &[(f64, f64)] {
         self.ramp.as_slice()
+    }
+
+    fn swings(&self) -> Option<f64> {
+        self.swings
     }
 }
 

@@ -74,6 +74,12 @@ pub enum Error {
         /// What was asked for, less what is reserved.
         tolerance: f64,
     },
+    /// The curve swings round or jumps.
+    #[error("the curve swings round or jumps after {time} s, which no keys follow")]
+    Swings {
+        /// About when, seconds.
+        time: f64,
+    },
 }
 
 /// What is known of the keys. Angles are degrees, distances units.
@@ -156,6 +162,7 @@ fn reduce<C: Curve<Value: Value<Stored = [f32; N]>>, const N: usize>(
         return Ok(written(curve, &keys, unit));
     }
     let stuck = |Stuck(time)| Error::Times { time, tolerance: asked };
+    steady(curve)?;
     pace::check(curve).map_err(stuck)?;
     let found = |limits: Limits| {
         let keys = search::fewest(curve, &stops, limits)?;
@@ -164,12 +171,18 @@ fn reduce<C: Curve<Value: Value<Stored = [f32; N]>>, const N: usize>(
     let keys = written(curve, &found(limits).map_err(stuck)?, unit);
     // Off the curve the search is not exact: few keys, and those that a step limits, may
     // be fewer on it.
-    let doubtful = keys.times.len() < FEW || keys.facts.largest_step * unit > 0.95 * step;
+    let stepped = keys.facts.largest_step * unit > 0.95 * step;
+    let doubtful = keys.times.len() < if stepped { search::CAREFUL } else { FEW };
     if limits.on_curve || !doubtful {
         return Ok(keys);
     }
     let on_curve = found(Limits { on_curve: true, ..limits }).map(|proven| written(curve, &proven, unit));
     Ok(on_curve.ok().filter(|other| other.times.len() < keys.times.len()).unwrap_or(keys))
+}
+
+/// Refuses a curve that jumps.
+fn steady(curve: &impl Curve) -> Result<(), Error> {
+    curve.swings().map_or(Ok(()), |time| Err(Error::Swings { time }))
 }
 
 /// Times that must be keys, as float32: the first, corners, the last.

@@ -149,7 +149,9 @@ impl<C: Curve> Proof<'_, C> {
 pub(super) fn bound_part(worst: &mut Worst, gap: &impl Gap, part: Part, rates: Option<Rates>) {
     worst.note(part.at_from.max(part.at_to));
     match rates {
-        Some(rates) => worst.search(gap, part, rates, 0),
+        Some(rates) => {
+            worst.search(gap, part, rates, 0);
+        }
         None => worst.note(measured(gap, &part)),
     }
 }

@@ -13,6 +13,9 @@ use super::value::Value;
 const BEAM: usize = 3;
 /// Ends that are looked ahead of in each round.
 const LOOKS: usize = 8;
+/// So many rounds; after them the furthest end is taken, for a few keys more and a tenth of
+/// the time.
+pub(super) const CAREFUL: usize = 2048;
 
 /// A key and the number of the key before it.
 struct Node<V: Value> {
@@ -36,7 +39,10 @@ pub(super) fn fewest<C: Curve>(
     let first = Key::new(stops[0], curve.at(f64::from(stops[0])));
     let mut nodes = vec![Node { key: first, before: 0 }];
     let mut beam = vec![(0, look(curve, stops, limits, first, f64::from(last - stops[0])))];
+    let mut round = 0;
     loop {
+        let (states, tried) = if round < CAREFUL { (BEAM, LOOKS) } else { (1, 1) };
+        round += 1;
         let mut ends: Vec<Node<C::Value>> = Vec::new();
         for (before, ahead) in &beam {
             ends.extend(ahead.ends().into_iter().map(|key| Node { key, before: *before }));
@@ -48,7 +54,7 @@ pub(super) fn fewest<C: Curve>(
             return Err(Stuck(f64::from(beam[0].1.key().time)));
         }
         spread(&mut ends, &nodes, stops);
-        thin_out(&mut ends, limits.tolerance);
+        thin_out(&mut ends, limits.tolerance, tried);
         let mut looks: Vec<(Node<C::Value>, Ahead<C>)> = Vec::with_capacity(ends.len());
         for end in ends {
             let way = f64::from(end.key.time) - f64::from(nodes[end.before].key.time);
@@ -56,7 +62,7 @@ pub(super) fn fewest<C: Curve>(
             looks.push((end, ahead));
         }
         looks.sort_by(|a, b| b.1.reach().total_cmp(&a.1.reach()));
-        looks.truncate(BEAM);
+        looks.truncate(states);
         beam.clear();
         for (node, ahead) in looks {
             beam.push((nodes.len(), ahead));
@@ -94,14 +100,14 @@ fn spread<V: Value>(ends: &mut Vec<Node<V>>, nodes: &[Node<V>], stops: &[f32]) {
 }
 
 /// Leaves the latest ends, and of those that are nearly the same one.
-fn thin_out<V: Value>(ends: &mut Vec<Node<V>>, tolerance: f64) {
+fn thin_out<V: Value>(ends: &mut Vec<Node<V>>, tolerance: f64, most: usize) {
     ends.sort_by(|a, b| b.key.time.total_cmp(&a.key.time));
-    let mut kept: Vec<Node<V>> = Vec::with_capacity(LOOKS);
+    let mut kept: Vec<Node<V>> = Vec::with_capacity(most);
     for end in ends.drain(..) {
         let same = |other: &Node<V>| {
             other.key.time == end.key.time && other.key.value.distance(end.key.value) < 0.05 * tolerance
         };
-        if kept.len() < LOOKS && !kept.iter().any(same) {
+        if kept.len() < most && !kept.iter().any(same) {
             kept.push(end);
         }
     }

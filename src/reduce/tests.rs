@@ -329,6 +329,32 @@ fn circle_needs_what_its_sagitta_asks() {
 }
 
 #[test]
+fn many_keys_cost_few_more() {
+    let curve = Travelling::new(&Circle, (0.0, 6000.0), &[]);
+    let count = 5 * search::CAREFUL;
+    let outside = 6000.0 / count as f64;
+    let ratio = (0.5 * outside).cos();
+    let keys = numbers(&curve, &Options::new((1.0 - ratio) / (1.0 + ratio))).unwrap();
+    // The search aims a little lower, and float32 times round by a hundredth of the tolerance.
+    assert!((count..=count + count / 50).contains(&keys.times.len()), "{} {count}", keys.times.len());
+}
+
+#[test]
+fn what_swings_round_is_refused() {
+    // 80° a second, run on over eight seconds, is 640°.
+    let keys: Vec<Quat> =
+        (0..4).map(|i| Quat::exp(Vec3::new(40f64.to_radians() * f64::from(i), 0.0, 0.0))).collect();
+    for (last, refused) in [(9.0, true), (2.0, false)] {
+        let times = [0.0, 1.0, last, last + 1.0];
+        let motion = Motion::new(&times, &keys, Scheme::BarryGoldman, Ends::Natural);
+        let curve = Turning::new(motion);
+        let options = Options::new(0.1);
+        assert_eq!(rotation(&curve, &options).err(), refused.then_some(Error::Swings { time: 1.0 }));
+        assert_eq!(cubic_rotation(&curve, &options).err(), refused.then_some(Error::Swings { time: 1.0 }));
+    }
+}
+
+#[test]
 fn places_below_float32_are_refused() {
     let curve = Travelling::new(&Throw, (0.0, 14.0), &[CORNER]);
     assert!(matches!(numbers(&curve, &Options::new(1e-6)), Err(Error::Tolerance { .. })));

@@ -19,6 +19,7 @@ use super::worst::{Gap, Part, Worst, parabola_peak};
 use crate::curve::{Arc, Motion, Piece, Rates};
 use crate::math::{Interval, Quat, half_angles};
 use std::f64::consts::FRAC_PI_2;
+use std::ops::Range;
 
 /// Samples of a motion: exact, and as written.
 pub(super) struct Stretch<'a> {
@@ -39,6 +40,9 @@ pub(crate) fn written(q: [f32; 4]) -> Quat {
 pub(crate) const NEGLIGIBLE: f64 = 2e-8;
 /// How often an interval is halved before its own rates are worked out.
 const CHEAP: u32 = 3;
+/// How many halvings a stretch has, if it has not as many intervals. What spins between keys
+/// far apart would need more than its samples take.
+const LEAST_HALVINGS: u32 = 4096;
 
 /// Upper bounds, radians, of the angle between motion and playback.
 pub(super) struct Bounds {
@@ -52,19 +56,12 @@ pub(super) struct Bounds {
 pub(super) fn upper_bounds(stretch: &Stretch) -> Bounds {
     let mut search = Search::new(stretch);
     let mut open = sieve::sift(&mut search);
-    if open.len() + 1 == stretch.times.len() {
-        // Nothing could be said: as it comes, so that neighbours in a piece share its rates.
-        open.sort_by_key(|open| open.interval);
-        let mut i = 0;
-        while i + 1 < stretch.times.len() {
-            i = search.run_from(i, stretch.times.len() - 1);
-        }
-    } else {
-        for Open { interval, bound } in open {
-            if !search.accept(interval, bound) {
-                search.run_from(interval, interval + 1);
-            }
-        }
+    if open.len() == search.intervals() {
+        // Nothing could be said.
+        open = search.by_pieces();
+    }
+    for open in open {
+        search.look_into(&open);
     }
     if let Some((found, bound)) = after_the_last(stretch) {
         for worst in [&mut search.slerp, &mut search.nlerp] {
@@ -138,7 +135,8 @@ impl<'a> Search<'a> {
         let playback: Vec<Quat> = stretch.written.iter().map(|&q| written(q)).collect();
         let turns = half_angles(&playback[..playback.len() - 1], &playback[1..]);
         let at_samples = half_angles(&playback, stretch.exact);
-        let mut worst = Worst::new(NEGLIGIBLE);
+        let halvings = LEAST_HALVINGS.max(turns.len() as u32);
+        let mut worst = Worst::thrifty(NEGLIGIBLE, halvings);
         worst.note(at_samples.iter().copied().fold(0.0, f64::max));
         Search { stretch, playback, turns, at_samples, slerp: worst, nlerp: worst }
     }
@@ -182,30 +180,43 @@ impl<'a> Search<'a> {
         self.nlerp.note(distance - blend::drift_bound(self.turns[i]));
     }
 
-    /// Takes a bound for the interval after sample i, if it is near enough to the worst
-    /// that was found.
-    pub(super) fn accept(&mut self, i: usize, slerp: f64) -> bool {
-        let nlerp = slerp + blend::drift_bound(self.turns[i]);
+    /// Takes a bound for some intervals, if it is near enough to the worst that was found.
+    pub(super) fn accept(&mut self, intervals: Range<usize>, slerp: f64) -> bool {
+        let nlerp = slerp + self.drift(intervals);
         let good = self.slerp.accepts(slerp) && self.nlerp.accepts(nlerp);
         if good {
-            self.slerp.settle(slerp);
-            self.nlerp.settle(nlerp);
+            self.settle(slerp, nlerp);
         }
         good
     }
 
-    /// Bounds the intervals from sample i to `end` that lie in one piece, or the one interval
-    /// that does not; returns the sample where it stopped.
-    fn run_from(&mut self, i: usize, end: usize) -> usize {
-        let piece = self.stretch.motion.piece_at(self.time(i));
-        let inside = (i + 1..=end).take_while(|&j| self.time(j) <= piece.end).count();
-        if inside == 0 {
-            self.across(i);
-            return i + 1;
+    fn settle(&mut self, slerp: f64, nlerp: f64) {
+        self.slerp.settle(slerp);
+        self.nlerp.settle(nlerp);
+    }
+
+    /// How far the two kinds of playback are apart within some intervals, at most.
+    fn drift(&self, intervals: Range<usize>) -> f64 {
+        blend::drift_bound(self.turns[intervals].iter().copied().fold(0.0, f64::max))
+    }
+
+    /// Bounds the intervals of each piece together, as far as that goes; returns what is left,
+    /// the worst first.
+    fn by_pieces(&mut self) -> Vec<Open> {
+        let (mut i, end, mut open) = (0, self.intervals(), Vec::new());
+        while i < end {
+            let piece = self.stretch.motion.piece_at(self.time(i));
+            let inside = (i + 1..=end).take_while(|&j| self.time(j) <= piece.end).count();
+            if inside == 0 {
+                open.push(Open { interval: i, bound: f64::INFINITY });
+            } else {
+                self.probe(&piece, i, i + inside);
+                self.within(&piece, whole(&piece), i..i + inside, &mut open);
+            }
+            i += inside.max(1);
         }
-        self.probe(&piece, i, i + inside);
-        self.within(&piece, i, i + inside);
-        i + inside
+        open.sort_by(|a, b| b.bound.total_cmp(&a.bound));
+        open
     }
 
     /// Looks half way between the samples i..=j, so that the search knows early what is
@@ -232,53 +243,46 @@ impl<'a> Search<'a> {
         Interlude { piece, playback }
     }
 
-    /// Bounds the intervals between the samples i..=j, all within the piece.
-    fn within(&mut self, piece: &Piece, i: usize, j: usize) {
-        let (from, to) = (self.time(i), self.time(j));
-        let longest = (i..j).map(|k| self.time(k + 1) - self.time(k)).fold(0.0, f64::max);
+    /// Bounds some intervals that lie within the piece, from rates that hold there.
+    fn within(&mut self, piece: &Piece, known: Rates, intervals: Range<usize>, open: &mut Vec<Open>) {
+        let (i, j) = (intervals.start, intervals.end);
+        let longest = intervals.clone().map(|k| self.time(k + 1) - self.time(k)).fold(0.0, f64::max);
         let ends = self.at_samples[i..=j].iter().copied().fold(0.0, f64::max);
-        let speed = (i..j).map(|k| self.turns[k] / (self.time(k + 1) - self.time(k))).fold(0.0, f64::max);
-        let drift = blend::largest_drift(self.turns[i..j].iter().copied().fold(0.0, f64::max));
-        let mut accept = |rates: Rates| {
-            let slerp = bound(rates, longest, ends, ends, speed);
-            let good = self.slerp.accepts(slerp) && self.nlerp.accepts(slerp + drift);
-            if good {
-                self.slerp.settle(slerp);
-                self.nlerp.settle(slerp + drift);
-            }
-            good
-        };
-        if accept(whole(piece)) || accept(on_stretch(piece, from, to)) {
+        let speed = intervals.clone().map(|k| self.speed(k)).fold(0.0, f64::max);
+        let gap = |rates: Rates| bound(rates, longest, ends, ends, speed);
+        if self.accept(intervals.clone(), gap(known)) {
+            return;
+        }
+        // Of more of a turn interval arithmetic says nothing.
+        let far = self.turns[intervals.clone()].iter().sum::<f64>() > 1.0;
+        let own = (j - i == 1 || !far).then(|| on_stretch(piece, self.time(i), self.time(j)));
+        let known = own.map_or(known, |own| known.and(own));
+        if own.is_some() && self.accept(intervals, gap(known)) {
             return;
         }
         if j - i > 1 {
             let middle = i + (j - i) / 2;
-            self.within(piece, i, middle);
-            self.within(piece, middle, j);
+            self.within(piece, known, i..middle, open);
+            self.within(piece, known, middle..j, open);
         } else {
-            let (at_from, at_to) = (self.at_samples[i], self.at_samples[j]);
-            self.both(piece, i, Part { from, to, at_from, at_to });
+            open.push(Open { interval: i, bound: gap(known) });
         }
     }
 
-    /// Bounds a part of the interval after sample k by either playback; both are one at
-    /// the interval's ends, and the distances at the part's are slerp's.
-    fn both(&mut self, piece: &Piece, k: usize, part: Part) {
-        let slerp = self.interval(piece, k, Blend::Slerp);
-        self.slerp.search(&slerp, part, whole(piece), CHEAP);
-        let nlerp = self.interval(piece, k, Blend::Nlerp);
-        let whole_interval = part.from == self.time(k) && part.to == self.time(k + 1);
-        let part = if whole_interval {
-            part
+    /// Bounds an interval that is open, as near as there are halvings for.
+    fn look_into(&mut self, open: &Open) {
+        let interval = open.interval..open.interval + 1;
+        let spent = self.slerp.is_spent() || self.nlerp.is_spent();
+        if self.accept(interval.clone(), open.bound) {
+        } else if spent && open.bound.is_finite() {
+            self.settle(open.bound, open.bound + self.drift(interval));
         } else {
-            Part { at_from: nlerp.at(part.from), at_to: nlerp.at(part.to), ..part }
-        };
-        self.nlerp.note(part.at_from.max(part.at_to));
-        self.nlerp.search(&nlerp, part, whole(piece), CHEAP);
+            self.across(open.interval);
+        }
     }
 
-    /// Bounds the interval after sample i, which spans more than one piece: at the knots
-    /// inside the distance is known, and between them the motion is smooth.
+    /// Bounds the interval after sample i: at knots inside the distance is known, and between
+    /// them the motion is smooth.
     fn across(&mut self, i: usize) {
         let end = self.time(i + 1);
         let (mut from, mut at_from) = (self.time(i), self.at_samples[i]);
@@ -292,6 +296,27 @@ impl<'a> Search<'a> {
             self.both(&piece, i, Part { from, to, at_from, at_to });
             (from, at_from) = (to, at_to);
         }
+    }
+
+    /// Bounds a part of the interval after sample k by either playback; both are one at
+    /// the interval's ends, and the distances at the part's are slerp's.
+    fn both(&mut self, piece: &Piece, k: usize, part: Part) {
+        let known = whole(piece);
+        let slerp = self.interval(piece, k, Blend::Slerp);
+        let bound = self.slerp.search(&slerp, part, known, CHEAP);
+        if self.nlerp.accepts(bound + self.drift(k..k + 1)) {
+            self.nlerp.settle(bound + self.drift(k..k + 1));
+            return;
+        }
+        let nlerp = self.interval(piece, k, Blend::Nlerp);
+        let whole_interval = part.from == self.time(k) && part.to == self.time(k + 1);
+        let part = if whole_interval {
+            part
+        } else {
+            Part { at_from: nlerp.at(part.from), at_to: nlerp.at(part.to), ..part }
+        };
+        self.nlerp.note(part.at_from.max(part.at_to));
+        self.nlerp.search(&nlerp, part, known, CHEAP);
     }
 }
 

@@ -57,14 +57,16 @@ pub(super) fn sift(search: &mut Search) -> Vec<Open> {
     let (mut parts, mut open) = cut(search);
     meet_keys(search, &mut parts);
     for _ in 0..HALVINGS {
-        parts.retain(|part| !search.accept(part.interval, part.bound(search.speed(part.interval))));
+        parts.retain(|part| {
+            !search.accept(part.interval..part.interval + 1, part.bound(search.speed(part.interval)))
+        });
         let middles = look_half_way(search, &parts);
         parts = parts.iter().zip(middles).flat_map(|(part, middle)| part.halves(middle)).collect();
     }
     for parts in parts.chunk_by(|a, b| a.interval == b.interval) {
         let interval = parts[0].interval;
         let bound = parts.iter().map(|part| part.bound(search.speed(interval))).fold(0.0, f64::max);
-        if !search.accept(interval, bound) {
+        if !search.accept(interval..interval + 1, bound) {
             open.push(Open { interval, bound });
         }
     }

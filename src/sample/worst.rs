@@ -52,8 +52,9 @@ pub(crate) struct Worst {
     negligible: f64,
     /// What the bound is to stay within, if it can be.
     limit: f64,
-    /// How many halvings are left.
+    /// How many halvings are left, and how many each stretch may take besides its share.
     halvings: u32,
+    fewest: u32,
 }
 
 /// A part that is not done.
@@ -88,13 +89,19 @@ impl Eq for Open {}
 impl Worst {
     /// Nothing is known; distances below `negligible` are not refined.
     pub(crate) fn new(negligible: f64) -> Worst {
-        Worst { found: 0.0, bound: 0.0, negligible, limit: f64::INFINITY, halvings: HALVINGS }
+        let (halvings, fewest) = (HALVINGS, FEWEST_HALVINGS);
+        Worst { found: 0.0, bound: 0.0, negligible, limit: f64::INFINITY, halvings, fewest }
+    }
+
+    /// The same with so many halvings; once they are spent, nothing is refined.
+    pub(crate) fn thrifty(negligible: f64, halvings: u32) -> Worst {
+        Worst { halvings, fewest: 0, ..Worst::new(negligible) }
     }
 
     /// Nothing is known; stretches are refined until they are within a limit, or something
     /// beyond it is found.
     pub(crate) fn proving(limit: f64) -> Worst {
-        Worst { found: limit, bound: 0.0, negligible: 0.0, limit, halvings: PROVING_HALVINGS }
+        Worst { found: limit, limit, halvings: PROVING_HALVINGS, ..Worst::new(0.0) }
     }
 
     /// One stretch more, refined until its bound is within a limit, or something beyond
@@ -124,21 +131,28 @@ impl Worst {
         bound <= (SLACK * self.found.max(self.negligible)).min(self.limit) || bound <= self.bound
     }
 
+    /// Whether there are no halvings left.
+    pub(crate) fn is_spent(&self) -> bool {
+        self.halvings + self.fewest == 0
+    }
+
     /// Takes the bound of a stretch that is done.
     pub(crate) fn settle(&mut self, bound: f64) {
         self.bound = self.bound.max(bound);
     }
 
     /// Bounds a gap on a part from rates that hold there; for the first `cheap` halvings
-    /// without asking for the part's own.
-    pub(crate) fn search(&mut self, gap: &impl Gap, part: Part, known: Rates, cheap: u32) {
-        let mut halvings = self.halvings / SHARE + FEWEST_HALVINGS;
+    /// without asking for the part's own if those bound anything. Returns the bound.
+    pub(crate) fn search(&mut self, gap: &impl Gap, part: Part, known: Rates, cheap: u32) -> f64 {
+        let mut halvings = self.halvings.div_ceil(SHARE) + self.fewest;
+        let cheap = if halvings == 0 { 0 } else { cheap };
         let mut open = BinaryHeap::from([self.open(gap, part, known, (0, cheap))]);
+        let mut worst = 0.0;
         // No other is beyond the one on top.
         while let Some(Open { bound, part, rates, level }) = open.pop() {
+            worst = bound;
             if self.accepts(bound) || level == DEPTH || halvings == 0 || self.found > self.limit {
-                self.settle(bound);
-                return;
+                break;
             }
             let middle = 0.5 * (part.from + part.to);
             let at_middle = gap.at(middle);
@@ -151,12 +165,15 @@ impl Worst {
             halvings -= 1;
             self.halvings = self.halvings.saturating_sub(1);
         }
+        self.settle(worst);
+        worst
     }
 
     /// A part with its bound, from known rates or its own.
     fn open(&self, gap: &impl Gap, part: Part, known: Rates, (level, cheap): (u32, u32)) -> Open {
         let mut rates = known;
         let mut bound = gap.bound(&part, rates);
+        let cheap = if rates.is_finite() { cheap } else { 0 };
         if !self.accepts(bound) && level >= cheap && self.hopeful(gap, &part, rates) {
             rates = rates.and(gap.rates(part.from, part.to));
             bound = bound.min(gap.bound(&part, rates));
@@ -168,9 +185,8 @@ impl Worst {
     fn hopeful(&self, gap: &impl Gap, part: &Part, rates: Rates) -> bool {
         let hoped = Rates { speed: rates.speed, acceleration: HOPE * rates.acceleration };
         // Rates that bound nothing may be far from those of the part.
-        let known = rates.speed.is_finite() && rates.acceleration.is_finite();
         let h = part.to - part.from;
-        !known || rates.speed * h > 1.0 || self.accepts(gap.bound(part, hoped))
+        !rates.is_finite() || rates.speed * h > 1.0 || self.accepts(gap.bound(part, hoped))
     }
 }
 
@@ -229,6 +245,39 @@ mod tests {
             let bound = searched(&Wave { mean, swing }, Worst::new(0.0)).bound();
             assert!(bound >= peak && bound <= SLACK * peak, "{mean} {swing}: {bound}");
         }
+    }
+
+    /// Nothing bounds it, and it counts how often it is looked at.
+    struct Unbounded(std::cell::Cell<u32>);
+
+    impl Gap for Unbounded {
+        fn at(&self, _t: f64) -> f64 {
+            self.0.set(self.0.get() + 1);
+            0.0
+        }
+
+        fn rates(&self, _from: f64, _to: f64) -> Rates {
+            Rates { speed: f64::INFINITY, acceleration: f64::INFINITY }
+        }
+
+        fn bound(&self, _part: &Part, _rates: Rates) -> f64 {
+            1.0
+        }
+    }
+
+    #[test]
+    fn no_more_is_looked_at_than_there_are_halvings() {
+        let (gap, halvings) = (Unbounded(0.into()), 100);
+        let mut worst = Worst::thrifty(0.0, halvings);
+        for i in 0..1000 {
+            let from = f64::from(i);
+            let part = Part { from, to: from + 1.0, at_from: 0.0, at_to: 0.0 };
+            // Without the last bound the next part would be accepted for it.
+            worst.bound = 0.0;
+            assert_eq!(worst.search(&gap, part, gap.rates(0.0, 0.0), 3), 1.0);
+        }
+        assert!(worst.is_spent());
+        assert_eq!(gap.0.get(), halvings);
     }
 
     #[test]

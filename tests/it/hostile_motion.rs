@@ -38,6 +38,8 @@ fn clips() -> Vec<(&'static str, String)> {
     let second = |i: usize| i as f64;
     let scaled = |by: f64| move |i: usize| turning(i, 0.5).map(|x| x * by);
     let mixed = [0.0, 1e-6, YEAR, YEAR + 64.0, 2.0 * YEAR];
+    // What is half a second's step swings round a hundred times within the next minute.
+    let spinning = [0.0, 0.5, 60.5, 61.0, 121.0];
     vec![
         ("identical", at(second, &|_| [0.6, 0.8, 0.0, 0.0])),
         ("identical but for signs", at(second, &|i| if i % 2 == 0 { ONE } else { [-1.0, 0.0, 0.0, 0.0] })),
@@ -49,6 +51,7 @@ fn clips() -> Vec<(&'static str, String)> {
         ("a microsecond apart, late", at(|i| 3600.0 + i as f64 * 1e-6, &|i| turning(i, 0.3))),
         ("a year apart", at(|i| i as f64 * YEAR, &|i| turning(i, 0.3))),
         ("a microsecond and a year", keys(mixed.into_iter().zip((0..).map(|i| turning(i, 0.3))))),
+        ("half a second and a minute", keys(spinning.into_iter().zip((0..).map(|i| turning(i, 2.0))))),
         ("denormal lengths", at(second, &scaled(1e-310))),
         ("huge lengths", at(second, &scaled(1e300))),
         ("denormal parts", at(second, &|i| [1.0, i as f64 * 5e-324, 0.0, -1e-310])),

@@ -16,7 +16,9 @@ pub(crate) use hermite::Hermite;
 
 use super::search::Stuck;
 use super::value::{Numbers, Value};
-use super::{Curve, Error, Facts, HALF_DEGREE, NEGLIGIBLE, Options, STEP_SLACK, check, pace, still, stops};
+use super::{
+    Curve, Error, Facts, HALF_DEGREE, NEGLIGIBLE, Options, STEP_SLACK, check, pace, steady, still, stops,
+};
 use crate::math::Quat;
 use search::{Limits, Piece};
 
@@ -65,6 +67,7 @@ fn reduce<C: Curve<Value: Flat<N>>, const N: usize>(
         return Ok(CubicKeys { times: vec![key.time], values: vec![[zero, key.stored, zero]], facts });
     }
     let stuck = |Stuck(time)| Error::Times { time, tolerance: options.tolerance };
+    steady(curve)?;
     pace::check(curve).map_err(stuck)?;
     let pieces = search::fewest(curve, &stops, limits).map_err(stuck)?;
     let proven = proof::prove(curve, pieces, limits, negligible).map_err(stuck)?;
