@@ -27,5 +27,5 @@ fn run(data: &[u8]) -> Option<usize> {
         sampling: Sampling::Rate { fps: dice.pick(&["1", "24", "1/1000"]).parse().ok()?, key_times: true },
         writing: Writing::default(),
     };
-    Some(convert(&inputs, asked)?.len())
+    Some(convert(&inputs, asked).size())
 }

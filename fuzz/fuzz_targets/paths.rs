@@ -36,7 +36,7 @@ fn run(data: &[u8]) -> Option<usize> {
         sampling: sampling(&mut dice)?,
         writing: Writing::default(),
     };
-    Some(convert(&inputs, asked)?.len())
+    Some(convert(&inputs, asked).size())
 }
 
 fn shape(dice: &mut Dice, frame: Option<Frame>) -> Shape {

@@ -11,7 +11,7 @@ use dat2glb::curve::{Ends, Scheme, Tcb};
 use dat2glb::moves::{Inputs, Shape};
 use dat2glb::read;
 use dat2glb::sample::{Encoding, Writing};
-use dat2glb_fuzz::convert::{Asked, convert, said};
+use dat2glb_fuzz::convert::{Asked, Outcome, convert, said};
 use dat2glb_fuzz::memory::measured;
 use libfuzzer_sys::fuzz_target;
 use std::fmt::Write as _;
@@ -85,7 +85,8 @@ impl Trip {
     fn run(&self) -> Option<usize> {
         let keyframes = said(read::keyframes("fuzz.dat", self.text().as_bytes(), None))?;
         let inputs = Inputs { keyframes: Some(keyframes), path: None, cameras: Vec::new() };
-        let bytes = convert(&inputs, self.asked()?)?;
+        let outcome = convert(&inputs, self.asked()?);
+        let Outcome::File(bytes) = outcome else { return Some(outcome.size()) };
         let mut asset = Asset::open(Box::new(Cursor::new(bytes.clone())), Box::new(NoFiles)).expect("opens");
         let mut report = Report::default();
         motion::compare(&mut asset, &inputs, Given::default(), &mut report)

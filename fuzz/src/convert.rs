@@ -19,9 +19,38 @@ pub struct Asked {
     pub writing: Writing,
 }
 
-/// Converts inputs and checks what comes out: the file's bytes, none where the inputs are
-/// refused or there would be too many samples. Panics where the output is not sound.
-pub fn convert(inputs: &Inputs, asked: Asked) -> Option<Vec<u8>> {
+/// A sample's time and value, bytes.
+const SAMPLE: usize = 20;
+
+/// What becomes of inputs.
+pub enum Outcome {
+    /// A sound file.
+    File(Vec<u8>),
+    /// A plan that would be about so many bytes.
+    Planned(usize),
+    Refused,
+}
+
+impl Outcome {
+    /// How much came out, or would.
+    pub fn size(&self) -> usize {
+        match self {
+            Outcome::File(bytes) => bytes.len(),
+            Outcome::Planned(bytes) => *bytes,
+            Outcome::Refused => 0,
+        }
+    }
+}
+
+/// Converts inputs and checks what comes out. Panics where it is not sound.
+pub fn convert(inputs: &Inputs, asked: Asked) -> Outcome {
+    planned(inputs, asked).unwrap_or(Outcome::Refused)
+}
+
+fn planned(inputs: &Inputs, asked: Asked) -> Option<Outcome> {
+    if matches!(asked.sampling, Sampling::Fewest(_)) && spins(inputs, asked.scheme) {
+        return None;
+    }
     let options = Options {
         name: "fuzz".into(),
         inputs: inputs.hashes().iter().map(|_| "fuzz.dat".to_owned()).collect(),
@@ -34,15 +63,27 @@ pub fn convert(inputs: &Inputs, asked: Asked) -> Option<Vec<u8>> {
     };
     let ground = said(Ground::new(inputs, asked.shape, &options.schemes))?;
     let plan = said(Plan::new(&ground, "fuzz.dat", &options))?;
-    if plan.samples() > MOST_SAMPLES || said(plan.fits_glb()).is_none() {
-        return None;
+    said(plan.fits_glb())?;
+    if plan.samples() > MOST_SAMPLES {
+        return Some(Outcome::Planned(SAMPLE * plan.samples() as usize));
     }
     let (file, _) = plan.write_glb(Cursor::new(Vec::new()), |_| ()).expect("memory can be written");
     let bytes = file.into_inner();
     let mut asset = Asset::open(Box::new(Cursor::new(bytes.clone())), Box::new(NoFiles)).expect("opens");
     let report = check::asset(&mut asset);
     assert!(report.worst() < Some(Severity::Error), "{}", report.text("fuzz.glb"));
-    Some(bytes)
+    Some(Outcome::File(bytes))
+}
+
+/// Whether keys are so uneven in time that a scheme spins thousands of times within the longest
+/// interval: rightly, to follow that takes millions of keys.
+fn spins(inputs: &Inputs, scheme: Scheme) -> bool {
+    use Scheme::{BarryGoldman, Bessel, BesselOverhauser, KochanekBartels, NaturalC2};
+    let velocities = [BarryGoldman, Bessel, BesselOverhauser, KochanekBartels, NaturalC2].contains(&scheme);
+    let times = inputs.keyframes.as_ref().map_or(&[][..], |keyframes| &keyframes.clip.times);
+    let gaps = times.windows(2).map(|pair| pair[1] - pair[0]).filter(|&gap| gap > 0.0);
+    let (least, most) = gaps.fold((f64::INFINITY, 0.0), |(a, b), gap| (gap.min(a), gap.max(b)));
+    velocities && most > 1000.0 * least
 }
 
 /// What went well; a refusal must have a message.

@@ -163,7 +163,7 @@ fn reduce<C: Curve<Value: Value<Stored = [f32; N]>>, const N: usize>(
     }
     let stuck = |Stuck(time)| Error::Times { time, tolerance: asked };
     steady(curve)?;
-    pace::check(curve).map_err(stuck)?;
+    pace::check(curve, tolerance).map_err(stuck)?;
     let found = |limits: Limits| {
         let keys = search::fewest(curve, &stops, limits)?;
         proof::prove(curve, &keys, tolerance, NEGLIGIBLE * tolerance)

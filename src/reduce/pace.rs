@@ -6,7 +6,7 @@
 
 use super::curve::Curve;
 use super::search::Stuck;
-use super::value::Value;
+use super::value::{Step, Value};
 
 /// Where a stretch between knots is looked at. Speeds of cubics are quadratics.
 const PROBES: [f64; 5] = [0.02, 0.25, 0.5, 0.75, 0.98];
@@ -21,24 +21,49 @@ const MANY: f64 = 100.0;
 /// What the speed found at a place may be off, relative to it, and more.
 const SURE: f64 = 1.1;
 
-/// Refuses a curve that turns too fast somewhere between knots that are many float32 numbers
-/// apart. The ramps of jumps may be as short as they like.
-pub(super) fn check<C: Curve>(curve: &C) -> Result<(), Stuck> {
-    let between = |pair: &&[f64]| {
-        let ramp = curve.ramps().iter().any(|&(from, to)| from <= pair[0] && pair[1] <= to);
-        !ramp && pair[1] - pair[0] > MANY * spacing(pair[1])
-    };
-    for pair in curve.knots().windows(2).filter(between) {
-        let known = curve.rates(pair[0], pair[1]);
-        if known.is_none_or(|rates| !is_too_fast::<C>(pair[1], rates.speed)) {
-            continue;
-        }
-        let times = PROBES.map(|u| pair[0] + u * (pair[1] - pair[0]));
-        if let Some(t) = times.into_iter().find(|&t| is_too_fast::<C>(t, speed(curve, t) / SURE)) {
+/// What the middle of a turn is off whose ends are off by 1, at most: 1 / cos(π/4), and more.
+const MIDDLE: f64 = 1.5;
+
+/// Refuses a curve that turns too fast somewhere for a tolerance. The ramps of jumps may be as
+/// short as they like.
+pub(super) fn check<C: Curve>(curve: &C, tolerance: f64) -> Result<(), Stuck> {
+    let on_ramp = |pair: &[f64]| curve.ramps().iter().any(|&(from, to)| from <= pair[0] && pair[1] <= to);
+    for pair in curve.knots().windows(2).filter(|pair| !on_ramp(pair)) {
+        let (from, to, spacing) = (pair[0], pair[1], spacing(pair[1]));
+        let Some(rates) = curve.rates(from, to) else { continue };
+        let stuck = if to - from > MANY * spacing {
+            let times = PROBES.map(|u| from + u * (to - from));
+            let too_fast = |t: &f64| is_too_fast::<C>(*t, speed(curve, *t) / SURE);
+            times.into_iter().filter(|_| is_too_fast::<C>(to, rates.speed)).find(too_fast)
+        } else {
+            let bends = rates.acceleration * spacing * spacing / 8.0 > tolerance;
+            floats(from, to).filter(|_| bends).find(|&t| !is_followed(curve, t, tolerance)).map(f64::from)
+        };
+        if let Some(t) = stuck {
             return Err(Stuck(t));
         }
     }
-    Ok(())
+    let last = curve.knots()[curve.knots().len() - 1] as f32;
+    let shown = curve.at(f64::from(last));
+    let follows = beyond(curve, last, shown) <= tolerance;
+    if follows { Ok(()) } else { Err(Stuck(f64::from(last))) }
+}
+
+/// The float32 numbers of a stretch that the next of is on it too.
+fn floats(from: f64, to: f64) -> impl Iterator<Item = f32> {
+    let first = if f64::from(from as f32) < from { (from as f32).next_up() } else { from as f32 };
+    std::iter::successors(Some(first), |t| Some(t.next_up()))
+        .take_while(move |t| f64::from(t.next_up()) <= to)
+}
+
+/// Whether playback could keep a tolerance from one float32 number to the next, where it has no
+/// key in between: at both, and half way.
+fn is_followed<C: Curve>(curve: &C, t: f32, tolerance: f64) -> bool {
+    let (from, to) = (f64::from(t), f64::from(t.next_up()));
+    let start = curve.at(from);
+    let step = start.step_to(curve.at(to));
+    let off = start.moved(step * 0.5).distance(curve.at(0.5 * (from + to)));
+    step.length() <= C::Value::LONGEST && off <= tolerance * (1.0 + MIDDLE)
 }
 
 /// An upper bound of how far the curve gets from the last key's value after that key: float32
@@ -85,10 +110,12 @@ mod tests {
     use crate::math::{Jet, Quat, Vec3};
     use crate::reduce::{self, Error, Options, Turning};
 
+    const DEGREE: f64 = std::f64::consts::PI / 360.0;
+
     fn checked(times: &[f64], scheme: Scheme, angle: f64) -> Result<(), Stuck> {
         let keys: Vec<Quat> =
             (0..times.len()).map(|i| Quat::exp(Vec3::new(0.5 * angle * i as f64, 0.0, 0.0))).collect();
-        check(&Turning::new(Motion::new(times, &keys, scheme, Ends::Natural)))
+        check(&Turning::new(Motion::new(times, &keys, scheme, Ends::Natural)), DEGREE)
     }
 
     #[test]
@@ -114,6 +141,19 @@ mod tests {
     }
 
     #[test]
+    fn a_swing_of_few_floats_is_refused_before_the_search() {
+        // Spins for 40 s, to turn by 2 radians and back within seven float32 numbers.
+        let keys = [0.0, 0.0, 1.0, 0.0, 0.0].map(|half| Quat::exp(Vec3::new(half, 0.0, 0.0)));
+        let times = [0.0, 40.271, 40.271_013, 40.271_026, 41.0];
+        let curve = |scheme| Turning::new(Motion::new(&times, &keys, scheme, Ends::Natural));
+        let refused = check(&curve(Scheme::Bessel), DEGREE);
+        assert!(matches!(refused, Err(Stuck(t)) if (40.271..40.271_026).contains(&t)), "{refused:?}");
+        assert_eq!(check(&curve(Scheme::Bessel), 40.0 * DEGREE), Ok(()));
+        // The corner between two float32 numbers is off by less.
+        assert_eq!(check(&curve(Scheme::Slerp), 10.0 * DEGREE), Ok(()));
+    }
+
+    #[test]
     fn what_follows_the_last_float_counts() {
         let year = 31_557_600.0;
         let keys: Vec<Quat> = (0..3).map(|i| Quat::exp(Vec3::new(0.4 * f64::from(i), 0.0, 0.0))).collect();
@@ -134,7 +174,7 @@ mod tests {
         assert_eq!(checked(&[0.0, 1e-6, year, year + 64.0, 2.0 * year], Scheme::Slerp, 0.3), Ok(()));
         assert_eq!(checked(&[0.0, 1e-6, 2e-6, 3e-6], Scheme::Bessel, 1.5), Ok(()));
         assert_eq!(checked(&[0.0, 1.0, 1.5, 2.0, 3.0], Scheme::Bessel, 3.0), Ok(()));
-        // Keys that float32 does not tell apart are not for this to judge.
-        assert_eq!(checked(&[3_600.0, 3_600.000_001, 3_600.000_002], Scheme::Slerp, 0.3), Ok(()));
+        // At most half a float32 after the last one, a thousandth of a step may follow.
+        assert_eq!(checked(&[0.0, 1.0, 3_600.000_1], Scheme::Slerp, 0.3), Ok(()));
     }
 }

@@ -13,8 +13,8 @@ use super::value::Value;
 const BEAM: usize = 3;
 /// Ends that are looked ahead of in each round.
 const LOOKS: usize = 8;
-/// So many rounds; after them the furthest end is taken, for a few keys more and a tenth of
-/// the time.
+/// So many rounds; after them only the furthest ends are looked at, of which there are several
+/// at a stop, for a few keys more and a fraction of the time.
 pub(super) const CAREFUL: usize = 2048;
 
 /// A key and the number of the key before it.
@@ -41,7 +41,7 @@ pub(super) fn fewest<C: Curve>(
     let mut beam = vec![(0, look(curve, stops, limits, first, f64::from(last - stops[0])))];
     let mut round = 0;
     loop {
-        let (states, tried) = if round < CAREFUL { (BEAM, LOOKS) } else { (1, 1) };
+        let careful = round < CAREFUL;
         round += 1;
         let mut ends: Vec<Node<C::Value>> = Vec::new();
         for (before, ahead) in &beam {
@@ -54,7 +54,11 @@ pub(super) fn fewest<C: Curve>(
             return Err(Stuck(f64::from(beam[0].1.key().time)));
         }
         spread(&mut ends, &nodes, stops);
-        thin_out(&mut ends, limits.tolerance, tried);
+        thin_out(&mut ends, limits.tolerance);
+        if !careful {
+            let latest = ends[0].key.time;
+            ends.retain(|end| end.key.time == latest);
+        }
         let mut looks: Vec<(Node<C::Value>, Ahead<C>)> = Vec::with_capacity(ends.len());
         for end in ends {
             let way = f64::from(end.key.time) - f64::from(nodes[end.before].key.time);
@@ -62,7 +66,7 @@ pub(super) fn fewest<C: Curve>(
             looks.push((end, ahead));
         }
         looks.sort_by(|a, b| b.1.reach().total_cmp(&a.1.reach()));
-        looks.truncate(states);
+        looks.truncate(if careful { BEAM } else { 1 });
         beam.clear();
         for (node, ahead) in looks {
             beam.push((nodes.len(), ahead));
@@ -100,14 +104,14 @@ fn spread<V: Value>(ends: &mut Vec<Node<V>>, nodes: &[Node<V>], stops: &[f32]) {
 }
 
 /// Leaves the latest ends, and of those that are nearly the same one.
-fn thin_out<V: Value>(ends: &mut Vec<Node<V>>, tolerance: f64, most: usize) {
+fn thin_out<V: Value>(ends: &mut Vec<Node<V>>, tolerance: f64) {
     ends.sort_by(|a, b| b.key.time.total_cmp(&a.key.time));
-    let mut kept: Vec<Node<V>> = Vec::with_capacity(most);
+    let mut kept: Vec<Node<V>> = Vec::with_capacity(LOOKS);
     for end in ends.drain(..) {
         let same = |other: &Node<V>| {
             other.key.time == end.key.time && other.key.value.distance(end.key.value) < 0.05 * tolerance
         };
-        if kept.len() < most && !kept.iter().any(same) {
+        if kept.len() < LOOKS && !kept.iter().any(same) {
             kept.push(end);
         }
     }
