@@ -204,8 +204,8 @@ fn still<C: Curve>(curve: &C, stops: &[f32], tolerance: f64) -> Option<Proven<C:
     if stops.len() > 2 || key.value.distance(end.value) > 2.0 * key.value.rounding() {
         return None;
     }
-    let held = proof::held(curve, key, last, tolerance)?;
-    Some(Proven { keys: vec![key], deviation: held, other: held, moved: held })
+    let held = proof::held(curve, key, last, tolerance)?.max(pace::beyond(curve, last, key.value));
+    (held <= tolerance).then(|| Proven { keys: vec![key], deviation: held, other: held, moved: held })
 }
 
 fn written<C: Curve<Value: Value<Stored = [f32; N]>>, const N: usize>(

@@ -166,6 +166,11 @@ mod tests {
         assert!(matches!(reduce::rotation(&curve, &degree), Err(Error::Times { time, .. }) if time == year));
         assert!(matches!(reduce::cubic_rotation(&curve, &degree), Err(Error::Times { .. })));
         assert!(beyond(&curve, 1e9, keys[2]) < 1e-15);
+        // What is still up to there is not one key.
+        let keys = [keys[0], keys[0], keys[1]];
+        let curve = Turning::new(Motion::new(&times, &keys, Scheme::Slerp, Ends::Natural));
+        assert!(matches!(reduce::rotation(&curve, &degree), Err(Error::Times { .. })));
+        assert!(matches!(reduce::cubic_rotation(&curve, &degree), Err(Error::Times { .. })));
     }
 
     #[test]
