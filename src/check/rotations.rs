@@ -35,6 +35,14 @@ fn tolerance(component: ComponentType) -> f64 {
 /// A unit quaternion (or nearly), its length and its time.
 type Placed = ([f64; 4], f64, f64);
 
+/// A key, if it has a direction.
+fn placed(channel: &Channel, stored: &[f32], t: f32) -> Option<Placed> {
+    let &[x, y, z, w] = at_key(channel, stored) else { return None };
+    let q = [x, y, z, w].map(f64::from);
+    let length = dot(q, q).sqrt();
+    (length > 0.0 && length.is_finite()).then_some((q, length, f64::from(t)))
+}
+
 struct Rotations<'a> {
     channel: &'a Channel,
     tolerance: f64,
@@ -74,13 +82,34 @@ pub(super) fn check(
 impl Rotations<'_> {
     fn block(&mut self, block: Block<'_>) {
         let width = self.channel.stored_width();
-        let values = block.values.chunks_exact(width);
-        for (i, (&t, stored)) in block.times.iter().zip(values).enumerate() {
-            self.next(block.first + i, t, stored);
+        let stored = |i: usize| &block.values[width * i..width * (i + 1)];
+        for (i, &t) in block.times.iter().enumerate() {
+            if i > 0 {
+                // Nearly all keys are well; to remember each of them takes longer than to see that.
+                if self.is_well(stored(i - 1), stored(i)) {
+                    continue;
+                }
+                self.previous = placed(self.channel, stored(i - 1), block.times[i - 1]);
+            }
+            self.next(block.first + i, t, stored(i));
+        }
+        if let Some(last) = block.times.len().checked_sub(1) {
+            self.previous = placed(self.channel, stored(last), block.times[last]);
         }
     }
 
+    /// Whether two keys, one after the other, certainly are near enough to unit length and to
+    /// each other.
     #[inline]
+    fn is_well(&self, before: &[f32], q: &[f32]) -> bool {
+        let (&[a, b, c, d], &[x, y, z, w]) = (before, q) else { return false };
+        let (before, q) = ([a, b, c, d].map(f64::from), [x, y, z, w].map(f64::from));
+        // (1 − tolerance)² and no more than (1 + tolerance)².
+        let unit = |q| (dot(q, q) - 1.0).abs() <= self.tolerance * (2.0 - self.tolerance);
+        let longest = 1.0 + self.tolerance;
+        unit(before) && unit(q) && dot(before, q) >= self.step_cosine * longest * longest
+    }
+
     fn next(&mut self, key: usize, t: f32, stored: &[f32]) {
         let time = f64::from(t);
         let &[x, y, z, w] = at_key(self.channel, stored) else {
@@ -92,7 +121,6 @@ impl Rotations<'_> {
         let tangents = stored.len() > 4;
         if !length.is_finite() || (tangents && stored.iter().any(|x| !x.is_finite())) {
             self.not_finite.note(key, time, 0.0);
-            self.previous = None;
             return;
         }
         if (length - 1.0).abs() > self.tolerance {
@@ -104,7 +132,6 @@ impl Rotations<'_> {
                 self.far(key, t, time - p_time, cosine);
             }
         }
-        self.previous = (length > 0.0).then_some((q, length, time));
     }
 
     /// A key that is far from the one before, or has another sign.
