@@ -276,17 +276,22 @@ impl<'a> Motion<'a> {
     fn segment(&self, i: usize) -> Shape {
         match &self.course {
             Course::Controls => Shape::Cubic(self.cubic(i)),
-            Course::Scheme(scheme, tcb, solution) => {
-                let velocities = self.velocities(*scheme, solution.as_ref(), i);
+            Course::Scheme(scheme, tcb, _) => {
+                let velocities = self.solved().map_or([Vec3::ZERO; 2], |all| [all[i], all[i + 1]]);
                 Shape::Segment(scheme.segment(&self.track.span(i, velocities, *tcb)))
             }
         }
     }
 
-    fn velocities(&self, scheme: Scheme, solution: Option<&Solution>, i: usize) -> [Vec3; 2] {
-        let (Some(solution), Some(solve)) = (solution, scheme.velocities()) else { return [Vec3::ZERO; 2] };
-        let solved = solution.get_or_init(|| solve(&self.track));
-        [solved[i], solved[i + 1]]
+    /// Finds what a scheme needs of all keys at once, if it does; else the first use does.
+    pub(crate) fn solve(&self) {
+        self.solved();
+    }
+
+    fn solved(&self) -> Option<&[Vec3]> {
+        let Course::Scheme(scheme, _, solution) = &self.course else { return None };
+        let (solution, solve) = (solution.as_ref()?, scheme.velocities()?);
+        Some(solution.get_or_init(|| solve(&self.track)))
     }
 
     /// The cubic of control rotations from time i to time i + 1.

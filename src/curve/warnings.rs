@@ -136,9 +136,9 @@ fn smoothed<T: AsRef<[Quat]>>(keys: &Keys<T>, scheme: Scheme, ends: Ends) -> Opt
 }
 
 /// Tracks for which no motion without jumps in acceleration was found.
-fn jumping<T: AsRef<[Quat]>>(keys: &Keys<T>, scheme: Scheme, ends: Ends) -> Option<Warning> {
+fn jumping<T: AsRef<[Quat]> + Sync>(keys: &Keys<T>, scheme: Scheme, ends: Ends) -> Option<Warning> {
     let solved = |track: &&T| Motion::new(keys.times, track.as_ref(), scheme, ends).is_solved();
-    let left = keys.tracks.iter().filter(|track| !solved(track)).count();
+    let left = keys.tracks.par_iter().filter(|track| !solved(track)).count();
     (left > 0).then(|| {
         let message = format!(
             "{} found no motion without jumps in acceleration for {left} of {} boxes: steps near half a turn \

@@ -68,6 +68,12 @@ pub fn rotations<E>(
 ) -> Result<Vec<TrackFacts>, E> {
     let mut facts = vec![TrackFacts::default(); tracks.len()];
     let mut turned = false;
+    // A chunk whose track is not would wait for another's to be.
+    tracks.par_iter().for_each(|rotation| {
+        if let Rotation::Motion(motion) = rotation {
+            motion.solve();
+        }
+    });
     let job = |track: usize, chunk| sample(&tracks[track], timeline, writing, chunk);
     in_order(tracks.len(), timeline.chunks(), job, |track, chunk, mut samples: Chunk| {
         turned &= chunk > 0;

@@ -12,7 +12,13 @@ use crate::curve::rule::End;
 use crate::curve::track::Track;
 use crate::math::Vec3;
 use glam::{DMat3, DVec3};
+use std::ops::Range;
 
+/// So many keys of a long track are solved for together, and with them so many on either side,
+/// whose velocities are dropped: what is wrong where a window ends falls by half or more from
+/// key to key, unless steps are near half a turn.
+const WINDOW: usize = 4096;
+const MARGIN: usize = 64;
 /// Newton's method takes about five steps.
 const MOST_STEPS: usize = 50;
 /// How often a step is halved that leads further away.
@@ -32,22 +38,46 @@ pub(in crate::curve) fn is_solved(track: &Track) -> bool {
 }
 
 fn solve(track: &Track) -> (Box<[Vec3]>, bool) {
-    let system = System::of(track);
-    let mut velocities = vec![DVec3::ZERO; system.unknowns()];
-    let mut error = system.error(&velocities);
-    let mut solved = false;
-    for _ in 0..MOST_STEPS {
-        let change = system.change(&velocities);
-        solved = system.turns(&change) < LAST;
-        let Some((closer, less)) = system.closer(&velocities, &change, error) else { break };
-        (velocities, error) = (closer, less);
-        if solved {
-            break;
+    if let Some(velocities) = by_windows(track) {
+        return (velocities, true);
+    }
+    let keys = 0..track.times.len();
+    let (mut velocities, solved) = System::of(track, keys).solve();
+    // Closed ends: the last key is the first.
+    velocities.extend((track.ends == Ends::Closed).then(|| velocities[0]));
+    (vectors(velocities), solved)
+}
+
+/// The velocities of a long track that is open, in the memory of a window; none where windows
+/// do not fit together.
+fn by_windows(track: &Track) -> Option<Box<[Vec3]>> {
+    let count = track.times.len();
+    if count <= 2 * WINDOW || track.ends == Ends::Closed {
+        return None;
+    }
+    let mut velocities: Vec<DVec3> = Vec::with_capacity(count);
+    for start in (0..count).step_by(WINDOW) {
+        let end = (start + WINDOW).min(count);
+        let keys = start.saturating_sub(MARGIN)..(end + MARGIN).min(count);
+        let first = start - keys.start;
+        let (window, solved) = System::of(track, keys).solve();
+        velocities.extend(&window[first..first + end - start]);
+        let fits = start == 0 || {
+            // The two keys at the seam, between two others.
+            let seam = start - 2..(start + 2).min(end);
+            let system = System::of(track, seam.clone());
+            let jump = |i: usize| system.worth(&system.row(&velocities[seam.clone()], i), i);
+            (1..seam.len() - 1).all(|i| jump(i) < LAST)
+        };
+        if !solved || !fits {
+            return None;
         }
     }
-    // Closed ends: the last key is the first.
-    let last = system.closed.then(|| velocities[0]);
-    (velocities.into_iter().chain(last).map(|w| Vec3::new(w.x, w.y, w.z)).collect(), solved)
+    Some(vectors(velocities))
+}
+
+fn vectors(velocities: Vec<DVec3>) -> Box<[Vec3]> {
+    velocities.into_iter().map(|w| Vec3::new(w.x, w.y, w.z)).collect()
 }
 
 /// One step from key to key.
@@ -95,15 +125,25 @@ impl Row {
     const ZERO: Row = Row { before: DMat3::ZERO, here: DMat3::ZERO, after: DMat3::ZERO, jump: DVec3::ZERO };
 }
 
+/// Where Newton's method stands.
+struct State {
+    velocities: Vec<DVec3>,
+    rows: Vec<Row>,
+    /// The sum of the squares of all jumps, each as the turn it is worth.
+    error: f64,
+}
+
+/// Keys that follow each other.
 struct System {
     steps: Vec<Step>,
     closed: bool,
-    /// The share of the end step's velocity at the ends; without it no acceleration.
-    share: Option<f64>,
+    /// The shares of the end steps' velocities at the first key and the last; without one no
+    /// acceleration.
+    shares: [Option<f64>; 2],
 }
 
 impl System {
-    fn of(track: &Track) -> System {
+    fn of(track: &Track, keys: Range<usize>) -> System {
         let step = |i: usize| Step {
             h: track.interval(i),
             tangent: Tangent::at((track.key(i).conjugate() * track.key(i + 1)).log()),
@@ -113,8 +153,31 @@ impl System {
             End::Repeat => Some(0.5),
             End::Chord(share) => Some(share),
         };
-        let steps = (0..track.times.len() - 1).map(step).collect();
-        System { steps, closed: track.ends == Ends::Closed, share }
+        let is_end = [keys.start == 0, keys.end == track.times.len()];
+        let steps = (keys.start..keys.end - 1).map(step).collect();
+        System { steps, closed: track.ends == Ends::Closed, shares: is_end.map(|end| share.filter(|_| end)) }
+    }
+
+    /// By Newton's method; and whether that came to an end.
+    fn solve(&self) -> (Vec<DVec3>, bool) {
+        let mut at = self.state(vec![DVec3::ZERO; self.unknowns()]);
+        let mut solved = false;
+        for _ in 0..MOST_STEPS {
+            let change = self.change(&at.rows);
+            solved = self.turns(&change) < LAST;
+            let Some(closer) = self.closer(&at, &change) else { break };
+            at = closer;
+            if solved {
+                break;
+            }
+        }
+        (at.velocities, solved)
+    }
+
+    fn state(&self, velocities: Vec<DVec3>) -> State {
+        let rows: Vec<Row> = (0..velocities.len()).map(|i| self.row(&velocities, i)).collect();
+        let error = rows.iter().enumerate().map(|(i, row)| self.worth(row, i).powi(2)).sum();
+        State { velocities, rows, error }
     }
 
     fn unknowns(&self) -> usize {
@@ -132,8 +195,12 @@ impl System {
     fn row(&self, velocities: &[DVec3], i: usize) -> Row {
         let count = velocities.len();
         let (before, after) = self.around(i);
-        if let (Some(share), Some(step), None) | (Some(share), None, Some(step)) = (self.share, before, after)
-        {
+        let end = match (before, after) {
+            (None, Some(step)) => self.shares[0].map(|share| (share, step)),
+            (Some(step), None) => self.shares[1].map(|share| (share, step)),
+            _ => None,
+        };
+        if let Some((share, step)) = end {
             // The velocity is given.
             let scale = 4.0 / step.h;
             let jump = (velocities[i] - step.theta() * (share / step.h)) * scale;
@@ -164,14 +231,11 @@ impl System {
         before.into_iter().chain(after).map(|step| step.h).fold(f64::INFINITY, f64::min)
     }
 
-    /// The sum of the squares of all jumps, each as the turn it is worth.
-    fn error(&self, velocities: &[DVec3]) -> f64 {
-        let worth = |i: usize| {
-            let (before, after) = self.around(i);
-            let stiffness: f64 = before.into_iter().chain(after).map(|step| 4.0 / step.h).sum();
-            self.shorter(i) / stiffness
-        };
-        (0..velocities.len()).map(|i| (self.row(velocities, i).jump * worth(i)).length_squared()).sum()
+    /// The jump at key i, as the turn it is worth.
+    fn worth(&self, row: &Row, i: usize) -> f64 {
+        let (before, after) = self.around(i);
+        let stiffness: f64 = before.into_iter().chain(after).map(|step| 4.0 / step.h).sum();
+        row.jump.length() * self.shorter(i) / stiffness
     }
 
     /// The largest turn, within the shorter interval, that changes of velocities make.
@@ -179,15 +243,14 @@ impl System {
         change.iter().enumerate().map(|(i, change)| change.length() * self.shorter(i)).fold(0.0, f64::max)
     }
 
-    /// Velocities nearer the solution than `velocities`, on the way of `change`, and their
-    /// error.
-    fn closer(&self, velocities: &[DVec3], change: &[DVec3], error: f64) -> Option<(Vec<DVec3>, f64)> {
+    /// Nearer the solution, on the way of `change`.
+    fn closer(&self, at: &State, change: &[DVec3]) -> Option<State> {
         let mut share = 1.0;
         for _ in 0..HALVINGS {
-            let moved: Vec<DVec3> = velocities.iter().zip(change).map(|(w, c)| w + c * share).collect();
-            let less = self.error(&moved);
-            if less < error {
-                return Some((moved, less));
+            let moved = at.velocities.iter().zip(change).map(|(w, c)| w + c * share).collect();
+            let moved = self.state(moved);
+            if moved.error < at.error {
+                return Some(moved);
             }
             share *= 0.5;
         }
@@ -195,10 +258,9 @@ impl System {
     }
 
     /// Newton's step.
-    fn change(&self, velocities: &[DVec3]) -> Vec<DVec3> {
-        let rows: Vec<Row> = (0..velocities.len()).map(|i| self.row(velocities, i)).collect();
+    fn change(&self, rows: &[Row]) -> Vec<DVec3> {
         if !self.closed {
-            return eliminate(&rows).into_iter().map(|(x, _)| x).collect();
+            return eliminate(rows).into_iter().map(|(x, _)| x).collect();
         }
         // The first key's change is set aside: all others follow from it, linearly.
         let first = rows[0];
@@ -293,6 +355,27 @@ mod tests {
 
     // Held ends jump on purpose.
     const OPEN: [Ends; 4] = [Ends::Natural, Ends::Clamped, Ends::Repeat, Ends::Chord];
+
+    #[test]
+    fn windows_give_what_the_whole_gives() {
+        let wave = |i: usize, k: f64| (k * i as f64 + 1.0).sin();
+        let steps: Vec<Key> = (0..2 * WINDOW + 1000)
+            .map(|i| ([wave(i, 1.3), wave(i, 2.3), wave(i, 4.1)], 0.4 + 0.4 * wave(i, 5.7), wave(i, 2.9)))
+            .collect();
+        let (times, keys) = track(&steps);
+        for ends in OPEN {
+            let track = Track { times: &times, keys: &keys, last: keys[keys.len() - 1], ends, margin: 0 };
+            let by_windows = by_windows(&track).unwrap();
+            let (whole, solved) = System::of(&track, 0..times.len()).solve();
+            assert!(solved && whole.len() == by_windows.len());
+            for (i, (a, b)) in whole.iter().zip(&by_windows).enumerate() {
+                let around = times[(i + 1).min(times.len() - 1)] - times[i.saturating_sub(1)];
+                // Both end within the last of Newton's steps.
+                let off = (*a - dvec(*b)).length() * around;
+                assert!(off < 4.0 * LAST, "{} {i}: {off:e}", ends.name());
+            }
+        }
+    }
 
     proptest! {
         #[test]
