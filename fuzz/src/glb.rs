@@ -1,7 +1,7 @@
 //! Mutations of a `.glb` that leave its container sound.
 
-use crate::dice::Dice;
-use crate::json;
+use super::dice::Dice;
+use super::json;
 
 /// A `.glb` taken apart.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

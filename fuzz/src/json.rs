@@ -1,6 +1,6 @@
 //! Mutations of JSON that leave it JSON.
 
-use crate::dice::Dice;
+use super::dice::Dice;
 use serde_json::{Number, Value};
 
 /// Names of members that glTF knows.

@@ -156,7 +156,8 @@ fn reduce<C: Curve<Value: Value<Stored = [f32; N]>>, const N: usize>(
     let asked = options.tolerance - options.reserve;
     let tolerance = asked * unit;
     let step = options.max_step.map_or(f64::INFINITY, |step| step * unit).min(C::Value::LONGEST);
-    let limits = Limits { tolerance, step, step_slack: STEP_SLACK * step, on_curve: options.on_curve };
+    let on_curve = options.on_curve;
+    let limits = Limits { tolerance, step, step_slack: STEP_SLACK * step, on_curve, several: true };
     let stops = stops(curve);
     if let Some(keys) = still(curve, &stops, tolerance) {
         return Ok(written(curve, &keys, unit));

@@ -12,6 +12,7 @@ use super::search::Stuck;
 use super::value::{OtherBlend, Step, Value};
 use crate::curve::Rates;
 use crate::sample::worst::{Gap, Part, Worst};
+use rayon::prelude::*;
 
 /// Keys that keep the tolerance, with what is known of their playback; in the units of
 /// [`Value::distance`].
@@ -28,6 +29,8 @@ pub(super) struct Proven<V: Value> {
 /// Where an interval is probed before anything is bounded.
 const PROBES: [f64; 3] = [0.21, 0.5, 0.79];
 
+/// Intervals that are proven one after the other, blocks of them side by side.
+const BLOCK: usize = 256;
 /// How many times as many keys are given up on: the curve's rates are known too badly.
 const MORE: usize = 4;
 /// How often an interval between two keys is halved at most.
@@ -44,13 +47,13 @@ pub(super) fn prove<C: Curve>(
     let worst = Worst::new(negligible);
     let mut proof = Proof { curve, tolerance, linear: worst, other: worst, uneven: [0.0; 2], moved: 0.0 };
     keys.windows(2).for_each(|pair| proof.probe(&Interval { curve, a: pair[0], b: pair[1] }));
-    let mut proven = vec![keys[0]];
-    let most = MORE * keys.len();
-    for pair in keys.windows(2) {
-        proof.interval(pair[0], pair[1], HALVINGS, &mut proven)?;
-        if proven.len() > most {
-            return Err(Stuck(f64::from(pair[0].time)));
-        }
+    let blocks = (0..keys.len() - 1).into_par_iter().step_by(BLOCK);
+    let proven: Vec<_> = blocks.map(|start| Proof { ..proof }.block(keys, start)).collect();
+    let mut all = vec![keys[0]];
+    for block in proven {
+        let (part, keys) = block?;
+        proof.add(&part);
+        all.extend(keys);
     }
     let last = keys[keys.len() - 1];
     let beyond = pace::beyond(curve, last.time, last.value);
@@ -58,7 +61,7 @@ pub(super) fn prove<C: Curve>(
         return Err(Stuck(f64::from(last.time)));
     }
     Ok(Proven {
-        keys: proven,
+        keys: all,
         deviation: (proof.linear.bound() + proof.uneven[0]).min(tolerance).max(beyond),
         other: (proof.other.bound() + proof.uneven[1]).max(beyond),
         moved: proof.moved,
@@ -99,6 +102,26 @@ impl<C: Curve> Proof<'_, C> {
         }
     }
 
+    /// Takes what became of a part of the intervals.
+    fn add(&mut self, part: &Self) {
+        self.linear.add(&part.linear);
+        self.other.add(&part.other);
+        self.uneven = [0, 1].map(|blend| self.uneven[blend].max(part.uneven[blend]));
+        self.moved = self.moved.max(part.moved);
+    }
+
+    /// Bounds the block of intervals that starts with a key; returns all keys but that one.
+    fn block(mut self, keys: &[Key<C::Value>], start: usize) -> Result<(Self, Vec<Key<C::Value>>), Stuck> {
+        let mut proven = Vec::with_capacity(BLOCK);
+        for pair in keys[start..].windows(2).take(BLOCK) {
+            self.interval(pair[0], pair[1], HALVINGS, &mut proven)?;
+            if proven.len() > MORE * BLOCK.min(keys.len()) {
+                return Err(Stuck(f64::from(pair[0].time)));
+            }
+        }
+        Ok((self, proven))
+    }
+
     /// Bounds an interval, or halves it as long as its bound is too large.
     fn interval(
         &mut self,
@@ -134,6 +157,11 @@ impl<C: Curve> Proof<'_, C> {
         }
         if let Some(blend) = C::Value::other_blend() {
             let gap = interval.blended(blend);
+            let near = linear.bound() + (blend.drift)(way);
+            if self.other.accepts(near) {
+                self.other.settle(near);
+                parts.clear();
+            }
             for (part, rates) in parts {
                 let part = Part { at_from: gap.at(part.from), at_to: gap.at(part.to), ..part };
                 bound_part(&mut self.other, &gap, part, rates);

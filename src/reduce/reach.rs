@@ -36,6 +36,8 @@ pub(super) struct Limits {
     /// What rounding may add to it.
     pub(super) step_slack: f64,
     pub(super) on_curve: bool,
+    /// Several ends are looked for, not only the furthest.
+    pub(super) several: bool,
 }
 
 /// A key as it is written.
@@ -237,7 +239,8 @@ impl<'a, C: Curve> Ahead<'a, C> {
                 bad = middle;
             }
         }
-        self.furthest = good;
+        // As its sample has it: a sum and a difference may round.
+        self.furthest = self.samples.last().map_or(0.0, |sample| sample.0);
     }
 
     /// A point common to the balls of the first samples, from a point near it.
@@ -399,7 +402,8 @@ impl<'a, C: Curve> Ahead<'a, C> {
             if on_curve(middle).is_some() { good = middle } else { bad = middle }
         }
         const SHARES: [f64; 8] = [1.0, 0.99, 0.975, 0.95, 0.92, 0.88, 0.8, 0.65];
-        SHARES.iter().filter_map(|share| on_curve(share * good)).collect()
+        let ends = SHARES.iter().filter_map(|share| on_curve(share * good));
+        ends.take(if self.limits.several { SHARES.len() } else { 1 }).collect()
     }
 
     /// Ends off the curve: the furthest, and some before it, outwards from how the curve
@@ -419,6 +423,9 @@ impl<'a, C: Curve> Ahead<'a, C> {
         // Where the step is what limits, offsets only lengthen the way.
         let mut ends = if self.stepped() < self.furthest { self.ends_on_curve() } else { Vec::new() };
         for share in [1.0, 0.985, 0.96, 0.92, 0.85] {
+            if !self.limits.several && !ends.is_empty() {
+                break;
+            }
             let time = (self.start + share * furthest) as f32;
             if time <= self.key.time || time >= self.stop.0 {
                 continue;

@@ -42,6 +42,7 @@ pub(super) fn fewest<C: Curve>(
     let mut round = 0;
     loop {
         let careful = round < CAREFUL;
+        let limits = Limits { several: careful, ..limits };
         round += 1;
         let mut ends: Vec<Node<C::Value>> = Vec::new();
         for (before, ahead) in &beam {

@@ -84,6 +84,8 @@ pub struct OtherBlend<V> {
     pub rates: fn(f64, f64, f64) -> Rates,
     /// What players may differ by where two keys are so far apart.
     pub uneven_lengths: fn(f64) -> f64,
+    /// How far this blend gets from playback between two keys so far apart, at most.
+    pub drift: fn(f64) -> f64,
 }
 
 /// Rotations: steps and distances are half angles, radians.
@@ -138,6 +140,7 @@ impl Value for Quat {
             between: |a, b, u| Blend::Nlerp.between(a, b, u),
             rates: blend::rates,
             uneven_lengths: |way| blend::uneven_lengths(Blend::Nlerp, way),
+            drift: blend::largest_drift,
         })
     }
 

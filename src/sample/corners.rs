@@ -7,12 +7,15 @@
 //! through its lengths at both ends. Branch and bound makes it close. The argument:
 //! docs/math/deviation.md.
 
+mod frame;
+
 use super::blend::{self, Blend};
 use super::deviation::{NEGLIGIBLE, on_stretch, whole, written};
 use super::translations::{Travel, straight_bound};
 use super::worst::{Gap, Part, Worst};
 use crate::curve::{Arc, Motion, Piece, Rates};
 use crate::math::{Jet, Quat, Vec3};
+use frame::{Frame, Moment};
 use glam::{DQuat, DVec3};
 use rayon::prelude::*;
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -231,13 +234,6 @@ struct Turn {
     between: Between<Quat>,
 }
 
-/// What a rotation and its playback are at a time: how they are turned, and how they turn, as
-/// angular velocities in their own frame.
-struct Moment {
-    turned: [DQuat; 2],
-    spins: [DVec3; 2],
-}
-
 impl Turn {
     fn at(&self, t: f64) -> Moment {
         let played = self.start * Quat::exp(self.way * self.between.place(t));
@@ -252,61 +248,8 @@ impl Turn {
     }
 }
 
-/// What hangs on some rotations, as it should be and as it is played: at the middle of a time
-/// how it is turned and turns, and what holds through all of that time. Angles by second.
-#[derive(Default)]
-struct Frame {
-    turned: [DQuat; 2],
-    spins: [DVec3; 2],
-    /// The largest angular speeds and accelerations.
-    speeds: [f64; 2],
-    bends: [f64; 2],
-    /// The largest angle between both, and differences of angular velocity and acceleration.
-    apart: f64,
-    spin_apart: f64,
-    bend_apart: f64,
-}
-
-impl Frame {
-    /// Adds a rotation: what it is half way, its largest speed and acceleration, and half the
-    /// time.
-    fn turn(&mut self, moment: Moment, [speed, bend]: [f64; 2], half: f64) {
-        let own = [0, 1].map(|k| moment.turned[k] * moment.spins[k]);
-        let plays = own[1].length();
-        let own_apart = own[0].distance(own[1]) + half * bend;
-        self.bend_apart += bend + self.spin_apart * speed + self.speeds[1] * (own_apart + self.apart * plays);
-        self.bends[0] += bend + self.speeds[0] * speed;
-        self.bends[1] += self.speeds[1] * plays;
-        for k in 0..2 {
-            self.turned[k] *= moment.turned[k];
-            self.spins[k] += self.turned[k] * moment.spins[k];
-            self.speeds[k] = self.spins[k].length() + half * self.bends[k];
-        }
-        self.spin_apart = self.spins[0].distance(self.spins[1]) + half * self.bend_apart;
-        self.apart = angle(self.turned) + half * self.spin_apart;
-    }
-
-    /// How fast the difference of two vectors of a length changes and bends that are turned so.
-    fn rates(&self, length: f64) -> Rates {
-        let [moves, plays] = self.speeds;
-        let acceleration = self.bend_apart
-            + self.bends[1] * self.apart
-            + moves * moves * self.apart
-            + (moves + plays) * self.spin_apart;
-        let speed = self.spin_apart + plays * self.apart;
-        // Rates without a bound make numbers that are none.
-        let known = |rate: f64| if rate.is_nan() { f64::INFINITY } else { length * rate };
-        Rates { speed: known(speed), acceleration: known(acceleration) }
-    }
-}
-
 fn vector(v: Vec3) -> DVec3 {
     DVec3::new(v.x, v.y, v.z)
-}
-
-/// The angle between two rotations.
-fn angle([a, b]: [DQuat; 2]) -> f64 {
-    Quat::from(a).angle_to(Quat::from(b))
 }
 
 /// All of a chain on such a stretch.

@@ -3,6 +3,7 @@
 mod clips;
 mod clips_played;
 mod hostile_motion;
+mod mutator;
 mod reference;
 mod scipy;
 mod support;
