@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Runs every fuzz target: `fuzz/run.sh [SECONDS]`, 60 each without a number, two at a time.
-# Starts from the seeds and the fixtures, keeps new inputs in fuzz/corpus, and fails on a
-# finding, whose input it leaves in fuzz/artifacts and names. Installs cargo-fuzz if it is
-# missing; needs a C++ compiler, for libFuzzer.
+# Starts from the seeds, the fixtures and the stored corpus (fuzz/store.sh), keeps new inputs in
+# fuzz/corpus, and fails on a finding, whose input it leaves in fuzz/artifacts and names. Installs
+# cargo-fuzz if it is missing; needs a C++ compiler, for libFuzzer.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -23,6 +23,8 @@ export RAYON_NUM_THREADS=1
 # Much more than a second: the checks of a debug build, coverage, and other work on the machine, make
 # what takes 1 s last longer.
 limits=(-timeout=25 -rss_limit_mb=1024 -max_len=65536 -print_final_stats=1)
+
+[ -d fuzz/corpus ] || tar -C fuzz -xzf fuzz/corpus.tar.gz
 
 seeds() { # TARGET: folders that are read, not written
   case "$1" in

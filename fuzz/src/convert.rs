@@ -10,6 +10,8 @@ use std::io::Cursor;
 
 /// Outputs of more samples are planned but not written: large ones would be slow rightly.
 pub const MOST_SAMPLES: u64 = 20_000;
+/// Tracks of more are not even planned.
+const MOST_PLANNED: f64 = 500_000.0;
 
 /// What is asked for.
 pub struct Asked {
@@ -62,6 +64,11 @@ fn planned(inputs: &Inputs, asked: Asked) -> Option<Outcome> {
         writing: asked.writing,
     };
     let ground = said(Ground::new(inputs, asked.shape, &options.schemes))?;
+    if let Sampling::Rate { fps, .. } = asked.sampling
+        && ground.duration() / fps.interval() > MOST_PLANNED
+    {
+        return None;
+    }
     let plan = said(Plan::new(&ground, "fuzz.dat", &options))?;
     said(plan.fits_glb())?;
     if plan.samples() > MOST_SAMPLES {

@@ -293,6 +293,20 @@ mod tests {
     }
 
     #[test]
+    fn a_long_way_from_a_pose_is_proven_closely() {
+        // A pose that is held while the motion turns by so much.
+        for degrees in [60.0, 119.0, 150.0, 179.0] {
+            let turned = Quat::exp(Vec3::new(f64::to_radians(0.5 * degrees), 0.0, 0.0));
+            let keys = [Quat::IDENTITY, turned];
+            let motion = Motion::new(&[0.0, 1.0], &keys, Scheme::Slerp, Ends::Natural);
+            let values: Vec<f32> = keys.iter().flat_map(|q| q.to_xyzw()).map(|x| x as f32).collect();
+            assert_eq!(proven("STEP", &values, &motion, degrees + 1e-3), Outcome::Within, "{degrees}");
+            let beyond = proven("STEP", &values, &motion, degrees - 1e-3);
+            assert!(matches!(beyond, Outcome::Beyond { .. }), "{degrees}: {beyond:?}");
+        }
+    }
+
+    #[test]
     fn what_is_no_number_is_beyond() {
         let motion = Motion::new(&[0.0, 1.0], &[Quat::IDENTITY; 2], Scheme::Slerp, Ends::Natural);
         let values = [0.0, 0.0, 0.0, 1.0, f32::NAN, 0.0, 0.0, 1.0];

@@ -5,6 +5,7 @@ use super::facing::tilt;
 use super::smoothstep;
 use super::upright::STEEP;
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// Half the 0.25 s over which the lean is smoothed: the Gaussian's standard deviation,
 /// so that its middle two thirds are a quarter of a second wide.
@@ -13,8 +14,8 @@ const SIGMA: f64 = 0.125;
 /// Grid steps in one σ. A spline on so fine a grid is the Gaussian's own shape to 1e-4.
 const PER_SIGMA: f64 = 8.0;
 
-/// Steps on the longest course: beyond 4.5 hours they grow.
-const MOST_STEPS: f64 = 1_048_576.0;
+/// Steps on the longest course: beyond 34 minutes they grow.
+const MOST_STEPS: f64 = 131_072.0;
 
 /// The roll of a course's turns as a function of time, radians: positive lifts the left.
 pub(super) struct Bank {
@@ -50,34 +51,40 @@ impl Bank {
     }
 }
 
-/// Acceleration to the left, level, units per second². Near the vertical, where left
-/// turns about, it fades away.
-fn lateral(course: &dyn Course, t: f64) -> f64 {
-    let Some(forward) = course.direction(t) else { return 0.0 };
-    let left = DVec3::new(forward.z, 0.0, -forward.x).normalize_or_zero();
-    let a = course.acceleration(t).dot(left) * smoothstep(tilt(forward) / STEEP);
-    if a.is_finite() { a } else { 0.0 }
+/// What a course does at a time.
+struct Moment {
+    /// Acceleration to the left, level, units per second². Near the vertical, where left
+    /// turns about, it fades away.
+    lateral: f64,
+    /// What rounding may make of an acceleration.
+    rounding: f64,
+}
+
+impl Moment {
+    fn at(course: &dyn Course, t: f64) -> Moment {
+        let [velocity, acceleration] = course.rates(t);
+        let rounding = 1e-9 * (acceleration.length() + velocity.length() / course.duration());
+        let forward = velocity.try_normalize().or_else(|| course.direction(t));
+        let lateral = forward.map_or(0.0, |forward| {
+            let left = DVec3::new(forward.z, 0.0, -forward.x).normalize_or_zero();
+            acceleration.dot(left) * smoothstep(tilt(forward) / STEEP)
+        });
+        Moment { lateral: if lateral.is_finite() { lateral } else { 0.0 }, rounding }
+    }
 }
 
 /// Mean lateral acceleration in each cell of the grid, and the largest anywhere; 0 for
 /// a course whose accelerations are rounding.
 fn cells(course: &dyn Course, count: usize, step: f64) -> (Vec<f64>, f64) {
     const SAMPLES: [f64; 4] = [0.125, 0.375, 0.625, 0.875];
-    let mut largest: f64 = 0.0;
-    let mut rounding: f64 = 0.0;
-    let mut note = |t: f64| {
-        let a = lateral(course, t);
-        let (speed, full) = (course.velocity(t).length(), course.acceleration(t).length());
-        rounding = rounding.max(1e-9 * (full + speed / course.duration()));
-        largest = largest.max(a.abs());
-        a
-    };
-    let cell = |i: usize| SAMPLES.map(|x| note((i as f64 + x) * step)).iter().sum::<f64>() / 4.0;
-    let cells = (0..count).map(cell).collect();
-    for &t in course.key_times() {
-        note(t);
-    }
-    (cells, if largest > rounding { largest } else { 0.0 })
+    let cell = |i: usize| SAMPLES.map(|x| Moment::at(course, (i as f64 + x) * step));
+    let cells: Vec<[Moment; 4]> = (0..count).into_par_iter().map(cell).collect();
+    let keys: Vec<Moment> = course.key_times().iter().map(|&t| Moment::at(course, t)).collect();
+    let all = || cells.iter().flatten().chain(&keys);
+    let largest = all().map(|moment| moment.lateral.abs()).fold(0.0, f64::max);
+    let rounding = all().map(|moment| moment.rounding).fold(0.0, f64::max);
+    let means = cells.iter().map(|cell| cell.iter().map(|moment| moment.lateral).sum::<f64>() / 4.0);
+    (means.collect(), if largest > rounding { largest } else { 0.0 })
 }
 
 /// The cells under a Gaussian, from two steps before the first to two after the last:

@@ -16,6 +16,10 @@ pub trait Course: Sync {
     fn velocity(&self, t: f64) -> DVec3;
     /// Acceleration at t, units a second squared; where it jumps, the later one.
     fn acceleration(&self, t: f64) -> DVec3;
+    /// Velocity and acceleration at t, for the price of one where that is less.
+    fn rates(&self, t: f64) -> [DVec3; 2] {
+        [self.velocity(t), self.acceleration(t)]
+    }
     /// Unit direction of travel at t; where the speed is zero, the limit from inside, else the last
     /// defined one; None if the whole course has none.
     fn direction(&self, t: f64) -> Option<DVec3>;

@@ -337,6 +337,10 @@ impl Course for Path {
     fn acceleration(&self, t: f64) -> DVec3 {
         self.acceleration(t)
     }
+    fn rates(&self, t: f64) -> [DVec3; 2] {
+        let state = self.state(self.piece_at(t), t);
+        [state.velocity, state.acceleration].map(|rate| rate * self.unit)
+    }
     fn direction(&self, t: f64) -> Option<DVec3> {
         self.direction(t)
     }

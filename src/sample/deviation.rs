@@ -6,7 +6,8 @@
 //! angle), A the sum of the largest half angular accelerations of both, and v the larger
 //! of both speeds in the same unit. The second variation of distance on the unit sphere
 //! gives f″ ≥ −A − 2v² tan(f/2): f stays below the parabola through both its ends whose
-//! second derivative is −(A + 1.1 v² F), as long as its peak F is at most 1.
+//! second derivative is −(A + 1.1 v² F), as long as its peak F is at most 1; with 4/π for
+//! 1.1, at most π/2.
 //!
 //! A and v are known of a whole piece in closed form. Where the bound from these is
 //! much above the worst that was found, the stretch is halved, and after some halvings
@@ -395,12 +396,13 @@ pub(crate) fn bound(rates: Rates, h: f64, at_from: f64, at_to: f64, playback: f6
     let steady = at_from.max(at_to) + 0.5 * h * (rates.speed + playback);
     // f64::min takes the number where the other is none: an unknown bound is the largest
     // angle there is.
-    if steady.is_nan() || steady > 1.0 {
-        return steady.min(FRAC_PI_2);
+    if steady.is_nan() || steady >= FRAC_PI_2 {
+        return FRAC_PI_2;
     }
+    let bend = if steady <= 1.0 { 1.1 } else { 2.0 / FRAC_PI_2 };
     // The peak raises the curvature that bounds it. Twice around from what holds in any
     // case takes off all but the last digits.
-    let peak = |f: f64| parabola_peak(at_from, at_to, h * h / 8.0 * (rates.acceleration + 1.1 * v * v * f));
+    let peak = |f: f64| parabola_peak(at_from, at_to, h * h / 8.0 * (rates.acceleration + bend * v * v * f));
     let first = peak(steady).min(steady);
     peak(first).min(first)
 }

@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# Stores the fewest small inputs that reach what all of fuzz/corpus reaches, as
+# fuzz/corpus.tar.gz: `fuzz/store.sh`, after `fuzz/run.sh`, whose programs it takes.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+programs=fuzz/target/$(rustc -vV | sed -n 's/^host: //p')/release
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export RAYON_NUM_THREADS=1
+for target in keyframes paths check draw round_trip; do
+  mkdir -p "$work/corpus/$target"
+  "$programs/$target" -set_cover_merge=1 -max_len=1024 "$work/corpus/$target" "fuzz/corpus/$target" \
+    >"$work/$target.log" 2>&1 || { tail "$work/$target.log" >&2; exit 1; }
+  echo "$target: $(find "$work/corpus/$target" -type f | wc -l) inputs"
+done
+tar -C "$work" --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner -c corpus | gzip -9n >fuzz/corpus.tar.gz
