@@ -22,7 +22,7 @@ cargo "${toolchain[@]}" fuzz build --sanitizer none --codegen-units 16
 export RAYON_NUM_THREADS=1
 # Much more than a second: the checks of a debug build, coverage, and other work on the machine, make
 # what takes 1 s last longer.
-limits=(-timeout=25 -rss_limit_mb=1024 -max_len=65536 -print_final_stats=1)
+limits=(-timeout=60 -rss_limit_mb=1024 -max_len=65536 -print_final_stats=1)
 
 [ -d fuzz/corpus ] || tar -C fuzz -xzf fuzz/corpus.tar.gz
 
