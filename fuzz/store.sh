@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Stores the fewest small inputs that reach what all of fuzz/corpus reaches, as
+# Stores the fewest of the small inputs in fuzz/corpus that reach what all of these reach, as
 # fuzz/corpus.tar.gz: `fuzz/store.sh`, after `fuzz/run.sh`, whose programs it takes.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -9,8 +9,9 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 export RAYON_NUM_THREADS=1
 for target in keyframes paths check draw round_trip; do
-  mkdir -p "$work/corpus/$target"
-  "$programs/$target" -set_cover_merge=1 -max_len=1024 "$work/corpus/$target" "fuzz/corpus/$target" \
+  mkdir -p "$work/corpus/$target" "$work/small/$target"
+  find "fuzz/corpus/$target" -type f -size -513c -exec cp -t "$work/small/$target" {} +
+  "$programs/$target" -set_cover_merge=1 "$work/corpus/$target" "$work/small/$target" \
     >"$work/$target.log" 2>&1 || { tail "$work/$target.log" >&2; exit 1; }
   echo "$target: $(find "$work/corpus/$target" -type f | wc -l) inputs"
 done

@@ -45,15 +45,21 @@ pub(super) fn prove<C: Curve>(
     negligible: f64,
 ) -> Result<Proven<C::Value>, Stuck> {
     let worst = Worst::new(negligible);
-    let mut proof = Proof { curve, tolerance, linear: worst, other: worst, uneven: [0.0; 2], moved: 0.0 };
+    let mut proof = Proof {
+        curve,
+        tolerance,
+        linear: worst,
+        other: worst,
+        uneven: [0.0; 2],
+        moved: 0.0,
+        proven: vec![keys[0]],
+    };
     keys.windows(2).for_each(|pair| proof.probe(&Interval { curve, a: pair[0], b: pair[1] }));
     let blocks = (0..keys.len() - 1).into_par_iter().step_by(BLOCK);
-    let proven: Vec<_> = blocks.map(|start| Proof { ..proof }.block(keys, start)).collect();
-    let mut all = vec![keys[0]];
-    for block in proven {
-        let (part, keys) = block?;
-        proof.add(&part);
-        all.extend(keys);
+    let begin = |start| Proof { proven: Vec::with_capacity(BLOCK), ..proof }.block(keys, start);
+    let parts: Vec<_> = blocks.map(begin).collect();
+    for part in parts {
+        proof.add(part?);
     }
     let last = keys[keys.len() - 1];
     let beyond = pace::beyond(curve, last.time, last.value);
@@ -61,7 +67,7 @@ pub(super) fn prove<C: Curve>(
         return Err(Stuck(f64::from(last.time)));
     }
     Ok(Proven {
-        keys: all,
+        keys: proof.proven,
         deviation: (proof.linear.bound() + proof.uneven[0]).min(tolerance).max(beyond),
         other: (proof.other.bound() + proof.uneven[1]).max(beyond),
         moved: proof.moved,
@@ -84,6 +90,7 @@ struct Proof<'a, C: Curve> {
     /// What players differ by at most over keys whose lengths are not quite one.
     uneven: [f64; 2],
     moved: f64,
+    proven: Vec<Key<C::Value>>,
 }
 
 impl<C: Curve> Proof<'_, C> {
@@ -103,33 +110,27 @@ impl<C: Curve> Proof<'_, C> {
     }
 
     /// Takes what became of a part of the intervals.
-    fn add(&mut self, part: &Self) {
+    fn add(&mut self, part: Self) {
         self.linear.add(&part.linear);
         self.other.add(&part.other);
         self.uneven = [0, 1].map(|blend| self.uneven[blend].max(part.uneven[blend]));
         self.moved = self.moved.max(part.moved);
+        self.proven.extend(part.proven);
     }
 
-    /// Bounds the block of intervals that starts with a key; returns all keys but that one.
-    fn block(mut self, keys: &[Key<C::Value>], start: usize) -> Result<(Self, Vec<Key<C::Value>>), Stuck> {
-        let mut proven = Vec::with_capacity(BLOCK);
+    /// Bounds the block of intervals that starts with a key.
+    fn block(mut self, keys: &[Key<C::Value>], start: usize) -> Result<Self, Stuck> {
         for pair in keys[start..].windows(2).take(BLOCK) {
-            self.interval(pair[0], pair[1], HALVINGS, &mut proven)?;
-            if proven.len() > MORE * BLOCK.min(keys.len()) {
+            self.interval(pair[0], pair[1], HALVINGS)?;
+            if self.proven.len() > MORE * BLOCK.min(keys.len()) {
                 return Err(Stuck(f64::from(pair[0].time)));
             }
         }
-        Ok((self, proven))
+        Ok(self)
     }
 
     /// Bounds an interval, or halves it as long as its bound is too large.
-    fn interval(
-        &mut self,
-        a: Key<C::Value>,
-        b: Key<C::Value>,
-        halvings: u32,
-        proven: &mut Vec<Key<C::Value>>,
-    ) -> Result<(), Stuck> {
+    fn interval(&mut self, a: Key<C::Value>, b: Key<C::Value>, halvings: u32) -> Result<(), Stuck> {
         let interval = Interval { curve: self.curve, a, b };
         let mut parts = Vec::new();
         let way = a.value.distance(b.value);
@@ -146,8 +147,8 @@ impl<C: Curve> Proof<'_, C> {
                 return Err(Stuck(f64::from(a.time)));
             }
             let middle = Key::new(middle, self.curve.at(f64::from(middle)));
-            self.interval(a, middle, halvings - 1, proven)?;
-            return self.interval(middle, b, halvings - 1, proven);
+            self.interval(a, middle, halvings - 1)?;
+            return self.interval(middle, b, halvings - 1);
         }
         self.linear.add(&linear);
         self.uneven[0] = self.uneven[0].max(uneven);
@@ -168,7 +169,7 @@ impl<C: Curve> Proof<'_, C> {
             }
             self.uneven[1] = self.uneven[1].max((blend.uneven_lengths)(way));
         }
-        proven.push(b);
+        self.proven.push(b);
         Ok(())
     }
 }
