@@ -99,18 +99,28 @@ impl Side {
 }
 
 impl Pyramid {
+    /// How far apart what is blended may come, half an angle.
+    fn reach(&self) -> f64 {
+        let reach = |side: &Side| match side {
+            Side::End(bend) => bend.length(),
+            Side::Line(Line { away, interval }) => away.length() / interval + self.step.length(),
+        };
+        self.sides.iter().map(reach).sum()
+    }
+
+    /// Whether it swings round while what is blended spins through a dozen turns and more.
+    pub(super) fn spins(&self) -> bool {
+        self.reach() > 12.0 * PI && self.swings()
+    }
+
     /// Whether any two slerps that are blended come so near to a full turn apart that the
     /// curve swings round, or jumps.
     pub(super) fn swings(&self) -> bool {
         const NEAR: f64 = 0.5;
         const PLACES: u32 = 64;
-        let reach = |side: &Side| match side {
-            Side::End(bend) => bend.length(),
-            Side::Line(Line { away, interval }) => away.length() / interval + self.step.length(),
-        };
         let wide = |from: Quat, to: Quat| (from.conjugate() * to).log().length() > PI - NEAR;
         // What is blended is no further apart than its parts reach.
-        self.sides.iter().map(reach).sum::<f64>() > PI - NEAR
+        self.reach() > PI - NEAR
             && (0..=PLACES).any(|i| {
                 let u = f64::from(i) / f64::from(PLACES);
                 let [early, late] = self.blends(u);

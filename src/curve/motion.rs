@@ -254,11 +254,12 @@ impl<'a> Motion<'a> {
         matches!(self.segment(i), Shape::Segment(Segment::BarryGoldman(pyramid)) if pyramid.swings())
     }
 
-    /// Where the first segment starts that swings round or jumps, seconds.
-    pub(crate) fn first_swing(&self) -> Option<f64> {
+    /// Where the first segment starts that spins, and swings round or jumps, seconds.
+    pub(crate) fn first_spin(&self) -> Option<f64> {
         let Course::Scheme(Scheme::BarryGoldman, ..) = self.course else { return None };
+        let spins = |i: usize| matches!(self.segment(i), Shape::Segment(Segment::BarryGoldman(pyramid)) if pyramid.spins());
         let times = &self.track.times;
-        (0..times.len() - 1).find(|&i| self.swings(i)).map(|i| times[i])
+        (0..times.len() - 1).find(|&i| spins(i)).map(|i| times[i])
     }
 
     fn holds(&self) -> bool {

@@ -40,7 +40,8 @@ const JUMP: f64 = 1e-6;
 
 /// A motion whose pieces are worked out once.
 pub struct Turning {
-    pieces: Vec<Piece>,
+    /// Each with the rates of the whole, which some schemes find out slowly.
+    pieces: Vec<(Piece, Rates)>,
     knots: Vec<f64>,
     corners: Vec<f64>,
     ramp: Option<(f64, f64)>,
@@ -65,11 +66,12 @@ impl Turning {
         corners.dedup();
         let mut knots: Vec<f64> = pieces.iter().map(|piece| piece.start).collect();
         knots.push(last);
+        let pieces = pieces.into_iter().map(|piece| (piece, whole(&piece))).collect();
         let ramp = motion.ramp().map(|start| (start, times[1]));
-        Turning { pieces, knots, corners, ramp, swings: motion.first_swing() }
+        Turning { pieces, knots, corners, ramp, swings: motion.first_spin() }
     }
 
-    fn piece(&self, t: f64) -> &Piece {
+    fn piece(&self, t: f64) -> &(Piece, Rates) {
         let after = self.knots.partition_point(|&knot| knot <= t);
         &self.pieces[after.saturating_sub(1).min(self.pieces.len() - 1)]
     }
@@ -87,7 +89,7 @@ impl Curve for Turning {
     type Value = Quat;
 
     fn at(&self, t: f64) -> Quat {
-        let piece = self.piece(t);
+        let (piece, _) = self.piece(t);
         piece.at(piece.parameter(t))
     }
 
@@ -100,8 +102,8 @@ impl Curve for Turning {
     }
 
     fn rates(&self, from: f64, to: f64) -> Option<Rates> {
-        let piece = self.piece(from);
-        Some(whole(piece).and(on_stretch(piece, from, to)))
+        let (piece, rates) = self.piece(from);
+        Some(rates.and(on_stretch(piece, from, to)))
     }
 
     fn ramps(&self) -> &[(f64, f64)] {
