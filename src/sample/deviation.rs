@@ -273,9 +273,11 @@ impl<'a> Search<'a> {
     /// Bounds an interval that is open, as near as there are halvings for.
     fn look_into(&mut self, open: &Open) {
         let interval = open.interval..open.interval + 1;
-        let spent = self.slerp.is_spent() || self.nlerp.is_spent();
         if self.accept(interval.clone(), open.bound) {
-        } else if spent && open.bound.is_finite() {
+            return;
+        }
+        let spent = self.slerp.is_spent() || self.nlerp.is_spent();
+        if spent && open.bound.is_finite() {
             self.settle(open.bound, open.bound + self.drift(interval));
         } else {
             self.across(open.interval);
@@ -305,8 +307,9 @@ impl<'a> Search<'a> {
         let known = whole(piece);
         let slerp = self.interval(piece, k, Blend::Slerp);
         let bound = self.slerp.search(&slerp, part, known, CHEAP);
-        if self.nlerp.accepts(bound + self.drift(k..k + 1)) {
-            self.nlerp.settle(bound + self.drift(k..k + 1));
+        let drifted = bound + self.drift(k..k + 1);
+        if self.nlerp.accepts(drifted) {
+            self.nlerp.settle(drifted);
             return;
         }
         let nlerp = self.interval(piece, k, Blend::Nlerp);
