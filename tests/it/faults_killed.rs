@@ -189,3 +189,28 @@ fn so_does_one_where_files_have_names() {
         raced(writer, if writer.ending == "gltf" { 20 } else { 4 }, true);
     }
 }
+
+/// Two names cannot be given at once: while one process gives them, any other waits, or it
+/// would remove the .bin that has its name while the .gltf has not.
+#[test]
+fn a_gltf_and_its_bin_take_their_names_in_turn() {
+    for (named, lock) in [(false, "."), (true, ".dat2glb-turn.tmp")] {
+        let folder = workshop();
+        let path = folder.path();
+        let (old, duration) = made(path, &WRITERS[1], "out.gltf", false);
+        if named {
+            fs::write(path.join(lock), "").unwrap();
+        }
+        let turn = fs::File::open(path.join(lock)).unwrap();
+        turn.lock().unwrap();
+        let mut waiting = started(path, &WRITERS[1].words("out.gltf", true), named);
+        thread::sleep(20 * duration);
+        assert!(waiting.try_wait().unwrap().is_none(), "it did not wait for its turn");
+        let bins =
+            || names(path).into_iter().filter(|name| name.starts_with("out.") && name.ends_with(".bin"));
+        assert!(content(path, "out.gltf") == old && bins().count() == 1);
+        drop(turn);
+        assert!(waiting.wait().unwrap().success());
+        assert!(content(path, "out.gltf") != old && bins().count() == 1);
+    }
+}
