@@ -136,17 +136,22 @@ impl<B: Base> Quat<Jet<B>> {
 /// c₁ are cos √x and sin √x / √x, and c_k = 1/k! − x c_{k+2}. Source: Stumpff 1959.
 pub(crate) fn stumpff<const N: usize>(x: f64) -> [f64; N] {
     if x < 1.0 {
-        // Twelve terms leave less than 1/24! for x below 1.
-        return std::array::from_fn(|k| {
-            let mut term: f64 = 1.0 / (1..=k).map(|i| i as f64).product::<f64>();
-            let mut sum = term;
-            for i in 0..12 {
+        // The last two by the series, of which ten terms leave less than k!/(k + 20)! of the
+        // first; the others from those.
+        let mut c = [0.0; N];
+        let first = |k: usize| 1.0 / (1..=k).map(|i| i as f64).product::<f64>();
+        for (k, sum) in c.iter_mut().enumerate().skip(N - 2) {
+            let mut term = first(k);
+            for i in 0..10 {
+                *sum += term;
                 let n = (k + 2 * i) as f64;
                 term *= -x / ((n + 1.0) * (n + 2.0));
-                sum += term;
             }
-            sum
-        });
+        }
+        for k in (0..N - 2).rev() {
+            c[k] = first(k) - x * c[k + 2];
+        }
+        return c;
     }
     let (cos, sinc) = x.cos_sinc_of_square();
     let (mut c, mut factorial) = ([0.0; N], 1.0);
@@ -186,15 +191,20 @@ impl Base for f64 {
 }
 
 /// arccos c / √(1 − c²) and its derivatives by c as a series in y = 1 − c: Σ a_k yᵏ with
-/// a₀ = 1 and a_{k+1} = a_k (k+1)/(2k+3). Thirty terms leave 8⁻³⁰ for y ≤ 1/4.
+/// a₀ = 1 and a_{k+1} = a_k (k+1)/(2k+3). From the third on, terms of g″ fall by a third and
+/// more for y ≤ 1/4: what is left after one is less than it.
 fn near_one(y: f64) -> [f64; 3] {
     let (mut g, mut dg, mut ddg) = (0.0, 0.0, 0.0);
     let (mut a, mut power) = (1.0, [0.0, 0.0, 1.0]); // powers k−2, k−1, k of y
     for k in 0..30 {
         let n = f64::from(k);
+        let last = n * (n - 1.0) * a * power[0];
         g += a * power[2];
         dg -= n * a * power[1];
-        ddg += n * (n - 1.0) * a * power[0];
+        ddg += last;
+        if k > 2 && last < 1e-18 {
+            break;
+        }
         a *= (n + 1.0) / (2.0 * n + 3.0);
         power = [power[1], power[2], power[2] * y];
     }
@@ -207,13 +217,14 @@ impl Base for Interval {
     }
 
     fn angle_over_sine_derivatives(self) -> [Interval; 3] {
-        if self.lo <= -1.0 {
+        let (lo, hi) = (self.lo(), self.hi().min(1.0));
+        if lo <= -1.0 {
             return [Interval::WHOLE; 3];
         }
         // Every coefficient of the series in 1 − c is positive, so g and g″ fall and g′
         // grows over the whole of (−1, 1].
-        let at_least = self.lo.angle_over_sine_derivatives();
-        let at_most = self.hi.min(1.0).angle_over_sine_derivatives();
+        let at_least = lo.angle_over_sine_derivatives();
+        let at_most = hi.angle_over_sine_derivatives();
         [
             Interval::around(at_most[0], at_least[0]),
             Interval::around(at_least[1], at_most[1]),
@@ -226,9 +237,10 @@ impl Interval {
     /// Ranges of the Stumpff functions over this interval; they fall up to x = π².
     fn stumpff_ranges(self) -> [Interval; 6] {
         const LEAST: [f64; 6] = [-1.0, -0.22, 0.0, 0.0, 0.0, 0.0];
-        let at_lo: [f64; 6] = stumpff(self.lo.max(0.0));
-        let far = self.hi > std::f64::consts::PI.powi(2);
-        let at_hi = if far { LEAST } else { stumpff(self.hi.max(0.0)) };
+        let (lo, hi) = (self.lo().max(0.0), self.hi().max(0.0));
+        let at_lo: [f64; 6] = stumpff(lo);
+        let far = hi > std::f64::consts::PI.powi(2);
+        let at_hi = if far { LEAST } else { stumpff(hi) };
         let top = if far { stumpff(0.0) } else { at_lo };
         std::array::from_fn(|k| Interval::around(at_hi[k], top[k]))
     }
