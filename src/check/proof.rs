@@ -9,7 +9,7 @@ use crate::curve::{Motion, Rates};
 use crate::math::Quat;
 use crate::reduce::{Curve, Flat, Hermite, Numbers, Step, Travelling, Value};
 use crate::sample::Travel;
-use crate::sample::deviation::{on_stretch, whole};
+use crate::sample::interlude::{on_stretch, whole};
 use crate::sample::worst::{Gap, Part, Worst};
 use std::borrow::Cow;
 

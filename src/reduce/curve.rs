@@ -4,7 +4,7 @@ use super::value::{Numbers, Value};
 use crate::curve::{Arc, Motion, Piece, Rates};
 use crate::math::{Jet, Quat};
 use crate::sample::Travel;
-use crate::sample::deviation::{on_stretch, whole};
+use crate::sample::interlude::{on_stretch, whole};
 
 /// A value as a function of time.
 pub trait Curve: Sync {
@@ -30,7 +30,7 @@ pub trait Curve: Sync {
     }
     /// After when the curve jumps, or turns at once by so much that keys had to follow each
     /// other as closely as can be; none where it does not.
-    fn swings(&self) -> Option<f64> {
+    fn first_spin(&self) -> Option<f64> {
         None
     }
 }
@@ -45,7 +45,7 @@ pub struct Turning {
     knots: Vec<f64>,
     corners: Vec<f64>,
     ramp: Option<(f64, f64)>,
-    swings: Option<f64>,
+    first_spin: Option<f64>,
 }
 
 impl Turning {
@@ -68,7 +68,7 @@ impl Turning {
         knots.push(last);
         let pieces = pieces.into_iter().map(|piece| (piece, whole(&piece))).collect();
         let ramp = motion.ramp().map(|start| (start, times[1]));
-        Turning { pieces, knots, corners, ramp, swings: motion.first_spin() }
+        Turning { pieces, knots, corners, ramp, first_spin: motion.first_spin() }
     }
 
     fn piece(&self, t: f64) -> &(Piece, Rates) {
@@ -110,8 +110,8 @@ impl Curve for Turning {
         self.ramp.as_slice()
     }
 
-    fn swings(&self) -> Option<f64> {
-        self.swings
+    fn first_spin(&self) -> Option<f64> {
+        self.first_spin
     }
 }
 

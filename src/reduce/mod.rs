@@ -183,7 +183,7 @@ fn reduce<C: Curve<Value: Value<Stored = [f32; N]>>, const N: usize>(
 
 /// Refuses a curve that jumps.
 fn steady(curve: &impl Curve) -> Result<(), Error> {
-    curve.swings().map_or(Ok(()), |time| Err(Error::Swings { time }))
+    curve.first_spin().map_or(Ok(()), |time| Err(Error::Swings { time }))
 }
 
 /// Times that must be keys, as float32: the first, corners, the last.

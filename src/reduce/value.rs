@@ -6,7 +6,8 @@
 use crate::curve::Rates;
 use crate::math::{Quat, Vec3};
 use crate::sample::blend::{self, Blend};
-use crate::sample::deviation::{self, written};
+use crate::sample::deviation::written;
+use crate::sample::interlude;
 use crate::sample::translations::straight_bound;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::{Add, Mul, Sub};
@@ -128,7 +129,7 @@ impl Value for Quat {
     }
 
     fn bound(rates: Rates, h: f64, at_ends: (f64, f64), speed: f64) -> f64 {
-        deviation::bound(rates, h, at_ends.0, at_ends.1, speed)
+        interlude::bound(rates, h, at_ends.0, at_ends.1, speed)
     }
 
     fn uneven_lengths(way: f64) -> f64 {

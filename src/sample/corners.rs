@@ -10,7 +10,8 @@
 mod frame;
 
 use super::blend::{self, Blend};
-use super::deviation::{NEGLIGIBLE, on_stretch, whole, written};
+use super::deviation::{NEGLIGIBLE, written};
+use super::interlude::{on_stretch, whole};
 use super::translations::{Travel, straight_bound};
 use super::worst::{Gap, Part, Worst};
 use crate::curve::{Arc, Motion, Piece, Rates};

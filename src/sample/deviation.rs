@@ -1,24 +1,16 @@
 //! How far playback of the written samples can be from the motion: a proven bound.
 //!
-//! Between two samples a viewer turns at constant speed, or blends the four numbers and
-//! normalises; the motion does neither. On a stretch of h seconds within one smooth
-//! piece, let f be the distance of motion and playback as unit quaternions (half the
-//! angle), A the sum of the largest half angular accelerations of both, and v the larger
-//! of both speeds in the same unit. The second variation of distance on the unit sphere
-//! gives f″ ≥ −A − 2v² tan(f/2): f stays below the parabola through both its ends whose
-//! second derivative is −(A + 1.1 v² F), as long as its peak F is at most 1; with 4/π for
-//! 1.1, at most π/2.
-//!
-//! A and v are known of a whole piece in closed form. Where the bound from these is
-//! much above the worst that was found, the stretch is halved, and after some halvings
-//! interval arithmetic bounds A and v on the stretch alone. The whole argument:
-//! docs/math/deviation.md.
+//! Acceleration and speed are known of a whole piece in closed form, and with them a bound of
+//! the distance between two samples ([`super::interlude`]). Where it is much above the worst that
+//! was found, the stretch is halved, and after some halvings interval arithmetic bounds both on
+//! the stretch alone. The whole argument: docs/math/deviation.md.
 
 use super::blend::{self, Blend};
+use super::interlude::{Interlude, Playback, bound, on_stretch, whole};
 use super::sieve::{self, Open};
-use super::worst::{Gap, Part, Worst, parabola_peak};
+use super::worst::{Gap, Part, Worst};
 use crate::curve::{Arc, Motion, Piece, Rates};
-use crate::math::{Interval, Quat, half_angles};
+use crate::math::{Quat, half_angles};
 use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
 
@@ -322,92 +314,6 @@ impl<'a> Search<'a> {
         self.nlerp.note(part.at_from.max(part.at_to));
         self.nlerp.search(&nlerp, part, known, CHEAP);
     }
-}
-
-/// What a player shows between two keys.
-#[derive(Clone, Copy, Debug)]
-struct Playback {
-    /// When it begins, seconds.
-    from: f64,
-    /// How long it takes, seconds.
-    h: f64,
-    /// The two keys as they are written.
-    ends: [Quat; 2],
-    /// Half the angle between them.
-    turn: f64,
-    blend: Blend,
-}
-
-impl Playback {
-    /// Half the angle between playback and a rotation at a time.
-    fn distance(&self, t: f64, q: Quat) -> f64 {
-        let u = (t - self.from) / self.h;
-        0.5 * self.blend.between(self.ends[0], self.ends[1], u).angle_to(q)
-    }
-
-    /// An upper bound of the distance on a part, from rates of the motion.
-    fn bound(&self, part: &Part, rates: Rates) -> f64 {
-        let h = part.to - part.from;
-        let steady = self.turn / self.h;
-        match self.blend {
-            Blend::Slerp => bound(rates, h, part.at_from, part.at_to, steady),
-            Blend::Nlerp => {
-                let place = |t: f64| (t - self.from) / self.h;
-                let own = blend::rates(self.turn, place(part.from), place(part.to)).per_second(self.h);
-                let sum = Rates { acceleration: rates.acceleration + own.acceleration, ..rates };
-                bound(sum, h, part.at_from, part.at_to, own.speed)
-            }
-        }
-    }
-}
-
-/// Playback beside a piece of the motion.
-struct Interlude<'a> {
-    piece: &'a Piece,
-    playback: Playback,
-}
-
-impl Gap for Interlude<'_> {
-    fn at(&self, t: f64) -> f64 {
-        self.playback.distance(t, self.piece.at(self.piece.parameter(t)))
-    }
-
-    fn rates(&self, from: f64, to: f64) -> Rates {
-        on_stretch(self.piece, from, to)
-    }
-
-    fn bound(&self, part: &Part, rates: Rates) -> f64 {
-        self.playback.bound(part, rates)
-    }
-}
-
-/// Rates of a whole piece.
-pub(crate) fn whole(piece: &Piece) -> Rates {
-    piece.rates().per_second(piece.duration())
-}
-
-/// Rates of a piece between two times.
-pub(crate) fn on_stretch(piece: &Piece, from: f64, to: f64) -> Rates {
-    let u = Interval::new(piece.parameter(from), piece.parameter(to));
-    Rates::within(piece, u).per_second(piece.duration())
-}
-
-/// The bound of the head of this file on a stretch of h seconds, with half the angle at
-/// either end and half the angular speed of playback; the acceleration is that of both.
-pub(crate) fn bound(rates: Rates, h: f64, at_from: f64, at_to: f64, playback: f64) -> f64 {
-    let v = rates.speed.max(playback);
-    let steady = at_from.max(at_to) + 0.5 * h * (rates.speed + playback);
-    // f64::min takes the number where the other is none: an unknown bound is the largest
-    // angle there is.
-    if steady.is_nan() || steady >= FRAC_PI_2 {
-        return FRAC_PI_2;
-    }
-    let bend = if steady <= 1.0 { 1.1 } else { 2.0 / FRAC_PI_2 };
-    // The peak raises the curvature that bounds it. Twice around from what holds in any
-    // case takes off all but the last digits.
-    let peak = |f: f64| parabola_peak(at_from, at_to, h * h / 8.0 * (rates.acceleration + bend * v * v * f));
-    let first = peak(steady).min(steady);
-    peak(first).min(first)
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ pub(crate) mod corners;
 pub(crate) mod deviation;
 mod encoding;
 mod fps;
+pub(crate) mod interlude;
 mod rotations;
 mod sieve;
 mod steps;

@@ -7,7 +7,8 @@
 //! is looked at, and bounds the two halves, a few times over. Blending the four numbers is no further off than
 //! slerp and what the two differ by.
 
-use super::deviation::{Search, bound};
+use super::deviation::Search;
+use super::interlude::bound;
 use crate::curve::Rates;
 use crate::math::{Quat, half_angles, slerps};
 
