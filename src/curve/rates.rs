@@ -31,6 +31,11 @@ impl Rates {
         self.speed.is_finite() && self.acceleration.is_finite()
     }
 
+    /// What tighter bounds of a part of the same can be hoped to be; proves nothing.
+    pub(crate) fn hoped(self) -> Rates {
+        Rates { acceleration: 0.5 * self.acceleration, ..self }
+    }
+
     /// The lower of two bounds of the same.
     pub fn and(self, other: Rates) -> Rates {
         // f64::min takes the number where the other is none.

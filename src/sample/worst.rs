@@ -19,8 +19,6 @@ const FEWEST_HALVINGS: u32 = 16;
 /// The same where a limit is to be proven, which can be close to what there is: as many as all
 /// halves of a part.
 const PROVING_HALVINGS: u32 = SHARE << DEPTH;
-/// What tighter rates can be hoped to leave of known ones.
-const HOPE: f64 = 0.5;
 
 /// Two times, with the distance at each.
 #[derive(Clone, Copy, Debug)]
@@ -183,10 +181,9 @@ impl Worst {
 
     /// Whether rates of the part alone might do.
     fn hopeful(&self, gap: &impl Gap, part: &Part, rates: Rates) -> bool {
-        let hoped = Rates { speed: rates.speed, acceleration: HOPE * rates.acceleration };
         // Rates that bound nothing may be far from those of the part.
         let h = part.to - part.from;
-        !rates.is_finite() || rates.speed * h > 1.0 || self.accepts(gap.bound(part, hoped))
+        !rates.is_finite() || rates.speed * h > 1.0 || self.accepts(gap.bound(part, rates.hoped()))
     }
 }
 
