@@ -77,6 +77,14 @@ pub(super) fn direction<N: Number>(v: Vec3<N>) -> (N, Vec3<N>) {
     (length, v * scale)
 }
 
+/// A share of a step, which is given by its length and its unit axis: by the sine of an angle, of
+/// which bounds do not lose sight beyond a turn.
+#[inline(always)]
+pub(super) fn turn<N, S: Scalar + From<N>>((length, axis): (N, Vec3<N>), share: S) -> Quat<S> {
+    let (sin, cos) = (share * S::from(length)).sin_cos();
+    Quat { w: cos, v: Vec3::constant(axis) * sin }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,7 +4,7 @@
 //! B̃₁ = 1 − (1−u)³, B̃₂ = 3u² − 2u³, B̃₃ = u³.
 //! Source: Kim, Kim and Shin, SIGGRAPH 1995; docs/math/cumulative-bezier.md.
 
-use super::arc::direction;
+use super::arc::{direction, turn};
 use super::rule::{Broad, End, Formula, Neighbour, Paced, Span};
 use super::{Arc, Rates, Tcb};
 use crate::math::{Number, Quat, Scalar, Vec3};
@@ -45,13 +45,6 @@ impl<N: Copy> Formula<N> for CumulativeCubic<N> {
         let [a, b, c] = self.steps;
         Quat::constant(self.start) * turn(a, basis[0]) * turn(b, basis[1]) * turn(c, basis[2])
     }
-}
-
-/// A share of a step, which is given by its length and its unit axis.
-#[inline(always)]
-pub(super) fn turn<N, S: Scalar + From<N>>((length, axis): (N, Vec3<N>), share: S) -> Quat<S> {
-    let (sin, cos) = (share * S::from(length)).sin_cos();
-    Quat { w: cos, v: Vec3::constant(axis) * sin }
 }
 
 impl Arc for CumulativeCubic {

@@ -11,9 +11,7 @@
 
 use super::motion::Motion;
 use super::rule::{Broad, Formula, Neighbour, Paced, Span};
-use super::scheme::Scheme;
 use super::{Arc, Rates, Tcb};
-use super::{bessel, bessel_overhauser, catmull_rom, kochanek_bartels, slerp, squad};
 use crate::math::{Lane, Quat, Vec3, widest};
 use fearless_simd::{Simd, dispatch};
 
@@ -31,7 +29,7 @@ const UNEVEN: f64 = 1e3;
 pub(super) fn at_all<T: Copy + Into<f64>>(motion: &Motion, times: &[T]) -> Vec<Quat> {
     let mut out = vec![Quat::IDENTITY; times.len()];
     let inner = motion.inner();
-    let dense = inner.as_ref().map_or(0, |inner| if inner.scheme.has_ends() { DENSE } else { usize::MAX });
+    let dense = inner.as_ref().map_or(0, |inner| if inner.has_ends { DENSE } else { usize::MAX });
     let mut sparse = Columns::new(motion.tcb());
     let (mut i, mut segment) = (0, 0);
     while i < times.len() {
@@ -45,7 +43,7 @@ pub(super) fn at_all<T: Copy + Into<f64>>(motion: &Motion, times: &[T]) -> Vec<Q
             for (k, &t) in times[i..i + run].iter().enumerate() {
                 sparse.push(window, t.into(), i + k);
                 if sparse.places.len() == WIDTH {
-                    sparse.flush(window.scheme, &mut out);
+                    sparse.flush(window.kernels, &mut out);
                 }
             }
             i += run;
@@ -54,7 +52,7 @@ pub(super) fn at_all<T: Copy + Into<f64>>(motion: &Motion, times: &[T]) -> Vec<Q
         }
     }
     if let Some(inner) = inner {
-        sparse.flush(inner.scheme, &mut out);
+        sparse.flush(inner.kernels, &mut out);
     }
     out
 }
@@ -90,16 +88,34 @@ pub(super) fn rates(inner: &Inner, segments: std::ops::Range<usize>, tcb: Tcb) -
             columns.push(&window, window.times[1], place);
         }
         if columns.places.len() == WIDTH {
-            columns.flush_rates(inner.scheme, &mut out);
+            columns.flush_rates(inner.kernels, &mut out);
         }
     }
-    columns.flush_rates(inner.scheme, &mut out);
+    columns.flush_rates(inner.kernels, &mut out);
     out
+}
+
+/// What works out the segments of one scheme side by side.
+#[derive(Clone, Copy)]
+pub(super) struct Kernels {
+    /// One sample of each.
+    points: fn(&Columns) -> Rows,
+    /// Rates of each by seconds: speeds, then accelerations.
+    paces: fn(&Columns) -> [[f64; WIDTH]; 2],
+    is_tame: fn(&[Quat; 4], &[f64; 3]) -> bool,
+}
+
+impl Kernels {
+    pub(super) fn of<B: Broad>() -> Kernels {
+        Kernels { points: Columns::points::<B>, paces: Columns::paces::<B>, is_tame: B::is_tame }
+    }
 }
 
 /// The segments of a motion that can be worked out side by side.
 pub(super) struct Inner<'a> {
-    pub(super) scheme: Scheme,
+    pub(super) kernels: Kernels,
+    /// Whether more than a segment's own two keys shape it.
+    pub(super) has_ends: bool,
     pub(super) times: &'a [f64],
     pub(super) keys: &'a [Quat],
     /// Those that no end shapes, with a neighbour on either side.
@@ -111,19 +127,19 @@ impl<'a> Inner<'a> {
     fn window(&self, segment: usize) -> Option<Window<'a>> {
         let from = segment.wrapping_sub(1);
         let four = |i: usize| i..i + 4;
-        self.segments.contains(&segment).then(|| Window {
-            scheme: self.scheme,
-            times: &self.times[four(from)],
-            keys: &self.keys[four(from)],
-        })
+        if !self.segments.contains(&segment) {
+            return None;
+        }
+        let (times, keys) = (&self.times[four(from)], &self.keys[four(from)]);
+        Some(Window { kernels: self.kernels, times: times.try_into().ok()?, keys: keys.try_into().ok()? })
     }
 }
 
 /// A segment's two keys and their neighbours.
 struct Window<'a> {
-    scheme: Scheme,
-    times: &'a [f64],
-    keys: &'a [Quat],
+    kernels: Kernels,
+    times: &'a [f64; 4],
+    keys: &'a [Quat; 4],
 }
 
 impl Window<'_> {
@@ -132,14 +148,15 @@ impl Window<'_> {
     }
 
     fn intervals(&self) -> [f64; 3] {
-        let &[a, b, c, d] = self.times else { unreachable!("a window is four keys wide") };
+        let &[a, b, c, d] = self.times;
         [b - a, c - b, d - c]
     }
 
-    /// Whether no interval is many times another.
+    /// Whether no interval is many times another, and the scheme has nothing against it.
     fn is_tame(&self) -> bool {
-        let [a, b, c] = self.intervals();
-        a.max(b).max(c) <= UNEVEN * a.min(b).min(c)
+        let intervals = self.intervals();
+        let [a, b, c] = intervals;
+        a.max(b).max(c) <= UNEVEN * a.min(b).min(c) && (self.kernels.is_tame)(self.keys, &intervals)
     }
 }
 
@@ -203,16 +220,8 @@ impl Columns {
     }
 
     /// Works out all that were pushed.
-    fn flush(&mut self, scheme: Scheme, out: &mut [Quat]) {
-        let rows = match scheme {
-            Scheme::Slerp => self.points::<slerp::Slerp>(),
-            Scheme::Squad => self.points::<squad::Squad>(),
-            Scheme::CatmullRom => self.points::<catmull_rom::CatmullRom>(),
-            Scheme::Bessel => self.points::<bessel::Bessel>(),
-            Scheme::BesselOverhauser => self.points::<bessel_overhauser::BesselOverhauser>(),
-            Scheme::KochanekBartels => self.points::<kochanek_bartels::KochanekBartels>(),
-            _ => return,
-        };
+    fn flush(&mut self, kernels: Kernels, out: &mut [Quat]) {
+        let rows = (kernels.points)(self);
         for (lane, &place) in self.places.iter().enumerate() {
             out[place] = Quat::from_wxyz(std::array::from_fn(|part| rows[part][lane]));
         }
@@ -220,16 +229,8 @@ impl Columns {
     }
 
     /// Works out the rates of all segments that were pushed.
-    fn flush_rates(&mut self, scheme: Scheme, out: &mut [Option<Rates>]) {
-        let [speeds, accelerations] = match scheme {
-            Scheme::Slerp => self.paces::<slerp::Slerp>(),
-            Scheme::Squad => self.paces::<squad::Squad>(),
-            Scheme::CatmullRom => self.paces::<catmull_rom::CatmullRom>(),
-            Scheme::Bessel => self.paces::<bessel::Bessel>(),
-            Scheme::BesselOverhauser => self.paces::<bessel_overhauser::BesselOverhauser>(),
-            Scheme::KochanekBartels => self.paces::<kochanek_bartels::KochanekBartels>(),
-            _ => return self.places.clear(),
-        };
+    fn flush_rates(&mut self, kernels: Kernels, out: &mut [Option<Rates>]) {
+        let [speeds, accelerations] = (kernels.paces)(self);
         for (lane, &place) in self.places.iter().enumerate() {
             out[place] = Some(Rates { speed: speeds[lane], acceleration: accelerations[lane] });
         }
@@ -288,7 +289,8 @@ impl Columns {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::curve::Ends;
+    use crate::curve::{Ends, Scheme};
+    use crate::math::Jet;
     use proptest::prelude::*;
 
     /// Keys with steps of up to 170°, at intervals that are powers of ten apart.
@@ -321,6 +323,31 @@ mod tests {
                         // each; uneven times multiply angles, and what they are off.
                         prop_assert!(q.angle_to(plain) < 1e-11, "{} {} {t}: {q:?} {plain:?}", scheme.name(), ends.name());
                         prop_assert!(q.dot(plain) > 0.0);
+                    }
+                }
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn rates_bound_the_derivatives((times, keys) in track()) {
+            for &scheme in Scheme::ALL {
+                let motion = Motion::new(&times, &keys, scheme, Ends::Natural);
+                let side_by_side = motion.rates_of(0..times.len() - 1);
+                for (i, broad) in side_by_side.into_iter().enumerate() {
+                    let piece = motion.piece(i, times[i]);
+                    let broad = broad.map(|rates| rates.per_second(1.0 / piece.duration()));
+                    for k in 0..=20 {
+                        let jet = piece.at(Jet::variable(0.05 * f64::from(k)));
+                        let (v, a) = (jet.half_velocity().length(), jet.half_acceleration().length());
+                        for rates in broad.into_iter().chain([piece.rates()]) {
+                            let name = format!("{} segment {i} at {k}: {v} {a} {rates:?}", scheme.name());
+                            // Accelerations are what is left of squares of speeds.
+                            let rounding = 1e-12 * (1.0 + rates.speed * rates.speed);
+                            prop_assert!(v <= rates.speed + rounding, "{name}");
+                            prop_assert!(a <= rates.acceleration * (1.0 + 1e-9) + rounding, "{name}");
+                        }
                     }
                 }
             }

@@ -17,6 +17,7 @@ mod cumulative;
 mod ends;
 mod kochanek_bartels;
 mod lanes;
+mod log_rates;
 mod motion;
 mod natural_c2;
 mod nlerp;

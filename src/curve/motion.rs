@@ -213,7 +213,9 @@ impl<'a> Motion<'a> {
         let Track { times, keys, .. } = self.track;
         // Two keys at either end: the second has an end for a neighbour.
         let segments = 2..times.len().saturating_sub(3);
-        (scheme.is_broad() && !self.holds()).then_some(Inner { scheme: *scheme, times, keys, segments })
+        let kernels = scheme.kernels().filter(|_| !self.holds())?;
+        let has_ends = scheme.has_ends();
+        Some(Inner { kernels, has_ends, times, keys, segments })
     }
 
     pub(super) fn tcb(&self) -> Tcb {

@@ -8,6 +8,7 @@ mod solve;
 
 pub(super) use solve::is_solved;
 
+use super::log_rates::BEND;
 use super::rule::{Rule, Smoothness, Span, Velocities};
 use super::{Arc, Rates};
 use crate::math::{Quat, Scalar, Vec3, stumpff};
@@ -64,7 +65,7 @@ impl Arc for VectorCubic {
         let straight = longest([b * 2.0, b * 2.0 + c * 6.0]);
         // X × X′ = u² a×b + 2u³ a×c + u⁴ b×c.
         let across = a.cross(b).length() + 2.0 * a.cross(c).length() + b.cross(c).length();
-        Rates { speed, acceleration: straight + 1.5 * speed * across }
+        Rates { speed, acceleration: straight + BEND * speed * across }
     }
 }
 
@@ -124,6 +125,7 @@ impl Tangent {
 
 #[cfg(test)]
 mod tests {
+    use super::super::log_rates::stretch;
     use super::*;
     use crate::math::Jet;
 
@@ -144,6 +146,18 @@ mod tests {
     }
 
     #[test]
+    fn the_inverse_is_bounded_as_rates_of_logarithms_say() {
+        for i in 1..3140 {
+            let x = 1e-3 * f64::from(i);
+            let y = Vec3::new(0.0, 1.0, 0.0);
+            let tangent = Tangent::at(Vec3::new(x, 0.0, 0.0));
+            let (inverse, limit) = (tangent.vector_rate(y), stretch(x) + 1e-12);
+            // Of a vector across, which both stretch the most.
+            assert!(inverse.length() <= limit && (inverse - y).length() <= limit * x, "{x}");
+        }
+    }
+
+    #[test]
     fn bending_is_bounded_as_the_rates_say() {
         for i in 1..=4000 {
             let x = 5e-3 * f64::from(i);
@@ -151,7 +165,7 @@ mod tests {
             let [f, g] = tangent.bending;
             let (f, g, g0) = ((f * x).abs(), (g * x * x).abs(), tangent.turning[1].abs());
             // Each falls as 1/x² or faster beyond.
-            assert!(f + g + g0 < 1.5, "{x}: {f} {g} {g0}");
+            assert!(f + g + g0 < BEND, "{x}: {f} {g} {g0}");
         }
     }
 }

@@ -1,14 +1,24 @@
 //! The list of schemes.
 
+use super::lanes::{self, Kernels};
 use super::rule::{Rule, Smoothness, Span, Velocities};
 use super::{
-    Arc, Rates, b_spline, barry_goldman, bessel, bessel_overhauser, catmull_rom, kochanek_bartels, lanes,
+    Arc, Rates, b_spline, barry_goldman, bessel, bessel_overhauser, catmull_rom, kochanek_bartels,
     natural_c2, nlerp, slerp, squad, step,
 };
 use crate::math::{Quat, Scalar};
 
+macro_rules! kernels {
+    (broad, $rule:path) => {
+        Some(Kernels::of::<$rule>())
+    };
+    (single, $rule:path) => {
+        None
+    };
+}
+
 macro_rules! schemes {
-    ($($listed:ident,)*; $($name:ident = $rule:path,)*) => {
+    ($($listed:ident,)*; $($name:ident = $rule:path: $breadth:ident,)*) => {
         /// How rotations run from key to key.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[expect(missing_docs, reason = "each scheme's own file and page describe it")]
@@ -55,6 +65,11 @@ macro_rules! schemes {
                 match self { $(Scheme::$name => <$rule as Rule>::VELOCITIES,)* }
             }
 
+            /// The vector code of its segments, if there is any.
+            pub(super) fn kernels(self) -> Option<Kernels> {
+                match self { $(Scheme::$name => kernels!($breadth, $rule),)* }
+            }
+
             pub(super) fn segment(self, span: &Span) -> Segment {
                 match self { $(Scheme::$name => Segment::$name(<$rule as Rule>::arc(span)),)* }
             }
@@ -81,29 +96,23 @@ macro_rules! schemes {
 
 schemes! {
     Slerp, Squad, CatmullRom, BesselOverhauser, Bessel, KochanekBartels, BarryGoldman, NaturalC2, BSpline, Nlerp,;
-    Slerp = slerp::Slerp,
-    Squad = squad::Squad,
-    CatmullRom = catmull_rom::CatmullRom,
-    BesselOverhauser = bessel_overhauser::BesselOverhauser,
-    Bessel = bessel::Bessel,
-    KochanekBartels = kochanek_bartels::KochanekBartels,
-    BarryGoldman = barry_goldman::BarryGoldman,
-    NaturalC2 = natural_c2::NaturalC2,
-    BSpline = b_spline::BSpline,
-    Nlerp = nlerp::Nlerp,
-    Step = step::Step,
+    Slerp = slerp::Slerp: broad,
+    Squad = squad::Squad: broad,
+    CatmullRom = catmull_rom::CatmullRom: broad,
+    BesselOverhauser = bessel_overhauser::BesselOverhauser: broad,
+    Bessel = bessel::Bessel: broad,
+    KochanekBartels = kochanek_bartels::KochanekBartels: broad,
+    BarryGoldman = barry_goldman::BarryGoldman: broad,
+    NaturalC2 = natural_c2::NaturalC2: single,
+    BSpline = b_spline::BSpline: single,
+    Nlerp = nlerp::Nlerp: single,
+    Step = step::Step: single,
 }
 
 impl Scheme {
     /// Whether its motion is held from key to key and jumps: what only STEP channels show.
     pub fn is_step(self) -> bool {
         self.smoothness() == Smoothness::Jumps
-    }
-
-    /// Whether its segments can be worked out side by side: see [`super::lanes`].
-    pub(super) fn is_broad(self) -> bool {
-        use Scheme::{Bessel, BesselOverhauser, CatmullRom, KochanekBartels, Slerp, Squad};
-        matches!(self, Slerp | Squad | CatmullRom | Bessel | BesselOverhauser | KochanekBartels)
     }
 
     /// Whether tension, continuity and bias shape it.

@@ -1,6 +1,7 @@
 //! `squad`: a slerp between two slerps, one of keys and one of control rotations.
 
 use super::arc::GreatArc;
+use super::log_rates::{BEND, stretch};
 use super::rule::{Broad, End, Formula, Neighbour, Paced, Rule, Smoothness, Span};
 use super::{Arc, Rates};
 use crate::math::{Number, Quat, Scalar};
@@ -60,7 +61,7 @@ impl Arc for SquadArc {
 impl<N: Number> Paced<N> for SquadArc<N> {
     /// With p and s the two inner arcs, which turn at constant P and S, L = log p⁻¹s and
     /// X = 2u(1−u) L, q = p exp X: its acceleration is at most
-    /// 2|P||X′| + |X″| + e^{2|X|}|X′|². L′ and L″ follow from ρ = S − Ad(r⁻¹) P, the
+    /// 2|P||X′| + |X″| + 1.5|X||X′|². L′ and L″ follow from ρ = S − Ad(r⁻¹) P, the
     /// velocity of r = p⁻¹s. Derived in docs/math/deviation.md.
     #[inline(always)]
     fn pace(&self) -> Rates<N> {
@@ -73,12 +74,14 @@ impl<N: Number> Paced<N> for SquadArc<N> {
         let theta = start.larger(end) + k(0.5) * way;
         let sine = theta.sin_cos().0;
         let rho = across + k(2.0) * sine * turn;
-        let stretch = theta.below(f64::MIN_POSITIVE, k(1.0), theta / sine.larger(k(f64::MIN_POSITIVE)));
+        let stretch = stretch(theta);
         let log1 = stretch * rho;
-        let log2 = stretch * (k(2.0) * turn * rho + (k(2.0) * theta).growth() * log1 * log1);
+        let log2 = stretch * (k(2.0) * turn * rho + k(BEND) * theta * log1 * log1);
         let x1 = k(2.0) * theta + k(0.5) * log1;
         let x2 = k(4.0) * theta + k(4.0) * log1 + k(0.5) * log2;
-        let (speed, acceleration) = (turn + x1, k(2.0) * turn * x1 + x2 + theta.growth() * x1 * x1);
+        // X is no longer than half of L.
+        let bent = k(0.5 * BEND) * theta * x1 * x1;
+        let (speed, acceleration) = (turn + x1, k(2.0) * turn * x1 + x2 + bent);
         let unknown = k(f64::INFINITY);
         Rates {
             speed: theta.below(WIDE, speed, unknown),

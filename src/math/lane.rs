@@ -109,16 +109,6 @@ impl Number for Lane {
     fn larger(self, other: Lane) -> Lane {
         if self.0 < other.0 { other } else { self }
     }
-
-    #[inline(always)]
-    fn growth(self) -> Lane {
-        // exp(x/16) by its series, of which what is left out and rounding are below 3e-14.
-        let mut power = polynomial(self.0 * 0.0625, EXPONENTIAL) * (1.0 + 5e-14);
-        for _ in 0..4 {
-            power = power * power;
-        }
-        Lane(power)
-    }
 }
 
 /// Half the angles between rotations, pair by pair.
@@ -190,14 +180,6 @@ const fn odd_numbers<const N: usize>() -> [f64; N] {
 
 const SINE: [f64; 8] = factorials(2);
 const COSINE: [f64; 8] = factorials(1);
-const EXPONENTIAL: [f64; 10] = {
-    let (mut terms, mut k) = ([1.0; 10], 1);
-    while k < 10 {
-        terms[k] = terms[k - 1] / k as f64;
-        k += 1;
-    }
-    terms
-};
 const ARC_TANGENT: [f64; 10] = odd_numbers();
 
 #[inline(always)]
@@ -289,12 +271,6 @@ mod tests {
             }
             prop_assert!(scale == 1.0 || (angle == 0.0 && axis == Vec3::ZERO));
             prop_assert!(scale < 1.0 || (axis * angle - q.log()).length() < 1e-14);
-        }
-
-        #[test]
-        fn growth_is_no_less(x in 0.0..3.0f64) {
-            let ratio = Lane(x).growth().0 / x.exp();
-            prop_assert!((1.0..1.0 + 1e-12).contains(&ratio), "{x}: {ratio}");
         }
 
         #[test]

@@ -78,9 +78,6 @@ pub trait Number: Scalar + PartialOrd {
 
     /// The larger of two numbers.
     fn larger(self, other: Self) -> Self;
-
-    /// The exponential of a number from 0 to 3, or up to 1e-12 of it more.
-    fn growth(self) -> Self;
 }
 
 impl Number for f64 {
@@ -104,10 +101,6 @@ impl Number for f64 {
 
     fn larger(self, other: f64) -> f64 {
         self.max(other)
-    }
-
-    fn growth(self) -> f64 {
-        self.exp()
     }
 }
 

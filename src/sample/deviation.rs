@@ -50,10 +50,8 @@ pub(super) struct Bounds {
 pub(super) fn upper_bounds(stretch: &Stretch) -> Bounds {
     let mut search = Search::new(stretch);
     let mut open = sieve::sift(&mut search);
-    if open.len() == search.intervals() {
-        // Nothing could be said.
-        open = search.by_pieces();
-    }
+    search.by_pieces(&mut open);
+    open.sort_by(|a, b| b.bound.total_cmp(&a.bound));
     for open in open {
         search.look_into(&open);
     }
@@ -198,23 +196,25 @@ impl<'a> Search<'a> {
         blend::drift_bound(self.turns[intervals].iter().copied().fold(0.0, f64::max))
     }
 
-    /// Bounds the intervals of each piece together, as far as that goes; returns what is left,
-    /// the worst first.
-    fn by_pieces(&mut self) -> Vec<Open> {
-        let (mut i, end, mut open) = (0, self.intervals(), Vec::new());
-        while i < end {
-            let piece = self.stretch.motion.piece_at(self.time(i));
-            let inside = (i + 1..=end).take_while(|&j| self.time(j) <= piece.end).count();
-            if inside == 0 {
-                open.push(Open { interval: i, bound: f64::INFINITY });
-            } else {
-                self.probe(&piece, i, i + inside);
-                self.within(&piece, whole(&piece), i..i + inside, &mut open);
+    /// Of intervals of which nothing is known bounds those of each piece together, as far as that
+    /// goes.
+    fn by_pieces(&mut self, open: &mut Vec<Open>) {
+        let unknown: Vec<usize> =
+            open.extract_if(.., |open| open.bound == f64::INFINITY).map(|open| open.interval).collect();
+        for run in unknown.chunk_by(|a, b| a + 1 == *b) {
+            let (mut i, end) = (run[0], run[0] + run.len());
+            while i < end {
+                let piece = self.stretch.motion.piece_at(self.time(i));
+                let inside = (i + 1..=end).take_while(|&j| self.time(j) <= piece.end).count();
+                if inside == 0 {
+                    open.push(Open { interval: i, bound: f64::INFINITY });
+                } else {
+                    self.probe(&piece, i, i + inside);
+                    self.within(&piece, whole(&piece), i..i + inside, open);
+                }
+                i += inside.max(1);
             }
-            i += inside.max(1);
         }
-        open.sort_by(|a, b| b.bound.total_cmp(&a.bound));
-        open
     }
 
     /// Looks half way between the samples i..=j, so that the search knows early what is

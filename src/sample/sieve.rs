@@ -53,7 +53,7 @@ impl Part {
     }
 }
 
-/// Settles what it can of all intervals; returns the others, the worst first.
+/// Settles what it can of all intervals; returns the others: first those of which nothing is known, in order.
 pub(super) fn sift(search: &mut Search) -> Vec<Open> {
     let (mut parts, mut open) = cut(search);
     meet_keys(search, &mut parts);
@@ -71,7 +71,6 @@ pub(super) fn sift(search: &mut Search) -> Vec<Open> {
             open.push(Open { interval, bound });
         }
     }
-    open.sort_by(|a, b| b.bound.total_cmp(&a.bound));
     open
 }
 
