@@ -8,13 +8,15 @@
 use super::curve::Curve;
 use super::reach::{Ahead, Key, Limits, Remembered};
 use super::value::Value;
+use rayon::prelude::*;
 
 /// States that stay in each round.
 const BEAM: usize = 3;
 /// Ends that are looked ahead of in each round.
 const LOOKS: usize = 8;
 /// So many rounds; after them only the furthest ends are looked at, of which there are several
-/// at a stop, for a few keys more and a fraction of the time.
+/// at a stop, and parts of what is left are searched side by side, for a few keys more and a
+/// fraction of the time.
 pub(super) const CAREFUL: usize = 2048;
 
 /// A key and the number of the key before it.
@@ -34,29 +36,87 @@ pub(super) fn fewest<C: Curve>(
     stops: &[f32],
     limits: Limits,
 ) -> Result<Vec<Key<C::Value>>, Stuck> {
+    let exact = |time: f32| Key::new(time, curve.at(f64::from(time)));
+    let careful = search(curve, stops, limits, exact(stops[0]), CAREFUL)?;
+    let Found::Some(mut keys) = careful else { return Ok(careful.keys()) };
+    let start = keys.pop().unwrap_or(exact(stops[0]));
+    let swift = Limits { several: false, ..limits };
+    let part = |stops: &Vec<f32>| {
+        let first = if stops[0] == start.time { start } else { exact(stops[0]) };
+        search(curve, stops, swift, first, usize::MAX).map(Found::keys)
+    };
+    let parts: Vec<_> = parts(curve.knots(), stops, start.time).par_iter().map(part).collect();
+    for part in parts {
+        // Each but the first begins with the key that ends the one before.
+        let part = part?;
+        keys.extend(&part[usize::from(keys.last().is_some_and(|last| last.time == part[0].time))..]);
+    }
+    Ok(keys)
+}
+
+/// How many parts are searched side by side, however many threads there are; each costs a key at most.
+const PARTS: usize = 32;
+
+/// The stops of the parts of what is left from a time on, cut at knots, an equal number to each.
+fn parts(knots: &[f64], stops: &[f32], from: f32) -> Vec<Vec<f32>> {
+    let last = stops[stops.len() - 1];
+    let inner = |t: &f32| from < *t && *t < last;
+    let knots: Vec<f32> = knots.iter().map(|&knot| knot as f32).filter(inner).collect();
+    let mut cuts: Vec<f32> = (1..PARTS).filter_map(|i| knots.get(i * knots.len() / PARTS).copied()).collect();
+    cuts.push(last);
+    cuts.dedup();
+    let mut before = from;
+    let part = |cut: f32| {
+        let between =
+            stops.partition_point(|&stop| stop <= before)..stops.partition_point(|&stop| stop < cut);
+        let part = [&[before], &stops[between], &[cut]].concat();
+        before = cut;
+        part
+    };
+    cuts.into_iter().map(part).collect()
+}
+
+/// What so many rounds of a search lead to.
+enum Found<V: Value> {
+    /// Keys up to the last stop.
+    All(Vec<Key<V>>),
+    /// Keys up to the one from which the next reaches furthest.
+    Some(Vec<Key<V>>),
+}
+
+impl<V: Value> Found<V> {
+    fn keys(self) -> Vec<Key<V>> {
+        let (Found::All(keys) | Found::Some(keys)) = self;
+        keys
+    }
+}
+
+/// Keys from the first on to the last stop, or to where so many rounds lead.
+fn search<C: Curve>(
+    curve: &C,
+    stops: &[f32],
+    limits: Limits,
+    first: Key<C::Value>,
+    rounds: usize,
+) -> Result<Found<C::Value>, Stuck> {
     let curve = &Remembered::new(curve);
     let last = stops[stops.len() - 1];
-    let first = Key::new(stops[0], curve.at(f64::from(stops[0])));
     let mut nodes = vec![Node { key: first, before: 0 }];
-    let mut beam = vec![(0, look(curve, stops, limits, first, f64::from(last - stops[0])))];
-    let mut round = 0;
-    loop {
-        let careful = round < CAREFUL;
-        let limits = Limits { several: careful, ..limits };
-        round += 1;
+    let mut beam = vec![(0, look(curve, stops, limits, first, f64::from(last - first.time)))];
+    for _ in 0..rounds {
         let mut ends: Vec<Node<C::Value>> = Vec::new();
         for (before, ahead) in &beam {
             ends.extend(ahead.ends().into_iter().map(|key| Node { key, before: *before }));
         }
         if let Some(end) = ends.iter().find(|end| end.key.time == last) {
-            return Ok(path(&nodes, end));
+            return Ok(Found::All(path(&nodes, end)));
         }
         if ends.is_empty() {
             return Err(Stuck(f64::from(beam[0].1.key().time)));
         }
         spread(&mut ends, &nodes, stops);
         thin_out(&mut ends, limits.tolerance);
-        if !careful {
+        if !limits.several {
             let latest = ends[0].key.time;
             ends.retain(|end| end.key.time == latest);
         }
@@ -67,13 +127,14 @@ pub(super) fn fewest<C: Curve>(
             looks.push((end, ahead));
         }
         looks.sort_by(|a, b| b.1.reach().total_cmp(&a.1.reach()));
-        looks.truncate(if careful { BEAM } else { 1 });
+        looks.truncate(if limits.several { BEAM } else { 1 });
         beam.clear();
         for (node, ahead) in looks {
             beam.push((nodes.len(), ahead));
             nodes.push(node);
         }
     }
+    Ok(Found::Some(path(&nodes, &nodes[beam[0].0])))
 }
 
 fn look<'a, C: Curve>(
@@ -129,4 +190,51 @@ fn path<V: Value>(nodes: &[Node<V>], end: &Node<V>) -> Vec<Key<V>> {
     keys.push(nodes[0].key);
     keys.reverse();
     keys
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::curve::{Ends, Motion, Scheme};
+    use crate::math::{Quat, Vec3};
+    use crate::reduce::Turning;
+
+    #[test]
+    fn parts_follow_each_other_and_hold_every_stop() {
+        let knots: Vec<f64> = (0..1000).map(|i| 0.5 * f64::from(i)).collect();
+        for (stops, from) in
+            [(vec![0.0, 499.5], 0.3), (vec![0.0, 7.0, 7.5, 100.0, 499.5], 7.0), (vec![0.0, 499.5], 499.2)]
+        {
+            let parts = parts(&knots, &stops, from);
+            assert!(parts.len() == PARTS || from > 400.0);
+            assert_eq!((parts[0][0], parts[parts.len() - 1].last()), (from, stops.last()));
+            assert!(parts.windows(2).all(|pair| pair[0].last() == pair[1].first()));
+            assert!(parts.iter().all(|part| part.windows(2).all(|pair| pair[0] < pair[1])));
+            let held = |stop: &f32| parts.iter().any(|part| part.contains(stop));
+            assert!(stops.iter().filter(|stop| **stop > from).all(held));
+        }
+    }
+
+    #[test]
+    fn side_by_side_costs_a_key_a_part() {
+        let turns =
+            (0..800).map(f64::from).map(|i| Vec3::new(i.sin(), (1.7 * i).cos(), (2.3 * i).sin()) * 0.2);
+        let keys: Vec<Quat> = turns
+            .scan(Quat::IDENTITY, |q, turn| {
+                *q = *q * Quat::exp(turn);
+                Some(*q)
+            })
+            .collect();
+        let times: Vec<f64> = (0..800).map(|i| 0.1 * f64::from(i)).collect();
+        let curve = Turning::new(Motion::new(&times, &keys, Scheme::Bessel, Ends::Natural));
+        let stops = [0.0, times[799] as f32];
+        let tolerance = 0.05f64.to_radians() / 2.0;
+        let limits = Limits { tolerance, step: 0.15, step_slack: 0.0, on_curve: false, several: true };
+        let keys = fewest(&curve, &stops, limits).unwrap();
+        let swift = Limits { several: false, ..limits };
+        let one = search(&curve, &stops, swift, keys[0], usize::MAX).unwrap().keys();
+        assert!(keys.len() > 2 * CAREFUL && keys.len() <= one.len() + PARTS, "{} {}", keys.len(), one.len());
+        assert!(keys.windows(2).all(|pair| pair[0].time < pair[1].time));
+        assert_eq!(keys[keys.len() - 1].time, stops[1]);
+    }
 }
