@@ -37,13 +37,9 @@ impl Broad for BarryGoldman {
         Pyramid { start, across, step: N::polar(across), sides }
     }
 
-    /// Whether no two slerps that are blended can come so near to a full turn apart that the
-    /// last digits of their angles count.
-    fn is_tame(keys: &[Quat; 4], intervals: &[f64; 3]) -> bool {
-        // Neighbours are no more than a quarter apart, where an angle is at most π/√8 of its chord.
-        let angle = |i: usize| PI * (0.25 - 0.25 * keys[i].dot(keys[i + 1])).max(0.0).sqrt();
-        let [before, own, after] = intervals;
-        angle(0) * own / before + angle(2) * own / after + 2.0 * angle(1) < PI - NEAR
+    fn is_tame(span: &Span) -> bool {
+        let pyramid = BarryGoldman::curve(span);
+        pyramid.widest(&pyramid.bows()) < WIDE
     }
 }
 
@@ -165,10 +161,17 @@ struct Bow<N> {
     width: N,
 }
 
-/// Where two rotations that are blended can be so far apart nothing is said of rates.
+/// Where two rotations that are blended can be so far apart nothing is said of rates, and digits are
+/// lost towards a full turn.
 const WIDE: f64 = 2.5;
 
 impl<N: Number> Bow<N> {
+    /// How far apart two of one step can be.
+    #[inline(always)]
+    fn apart(p: &Bow<N>, s: &Bow<N>) -> N {
+        N::from(0.25) * (N::length(p.vector) + N::length(s.vector))
+    }
+
     /// exp(u step + u(1 − u) bend). With c = |step × bend| and X that sum, X × X′ is −u² and
     /// X × X″ −2u times step × bend.
     #[inline(always)]
@@ -246,6 +249,19 @@ impl<N: Number> Pyramid<N> {
         (self.step.0, -self.step.1)
     }
 
+    /// How both sides leave the step.
+    #[inline(always)]
+    fn bows(&self) -> [Bow<N>; 2] {
+        let step = self.step.1 * self.step.0;
+        [self.sides[0].bow(step), self.sides[1].bow(-step)]
+    }
+
+    /// How far apart two rotations get that are blended, at most.
+    #[inline(always)]
+    fn widest(&self, [p, s]: &[Bow<N>; 2]) -> N {
+        Bow::apart(p, s).larger(p.width).larger(s.width)
+    }
+
     /// The curves of both sides at u, seen from the first key.
     #[inline(always)]
     fn blends<S: Scalar + From<N>>(&self, u: S) -> [Quat<S>; 2] {
@@ -281,10 +297,10 @@ impl<N: Number> Paced<N> for Pyramid<N> {
     #[inline(always)]
     fn pace(&self) -> Rates<N> {
         let (k, norm) = (N::constant, N::length);
-        let step = self.step.1 * self.step.0;
-        let (p, s) = (self.sides[0].bow(step), self.sides[1].bow(-step));
+        let bows = self.bows();
+        let [p, s] = &bows;
         let (bowed, more) = (norm(p.vector), norm(s.vector - p.vector));
-        let width = k(0.25) * (bowed + norm(s.vector));
+        let width = Bow::apart(p, s);
         // The largest velocity and acceleration of p, and rates of p⁻¹s.
         let speed = self.step.0 + bowed + p.off.speed;
         let acceleration = k(2.0) * bowed + p.off.acceleration;
@@ -308,7 +324,7 @@ impl<N: Number> Paced<N> for Pyramid<N> {
                 + tilt2
                 + width * (x2 + k(BEND) * x1 * x1),
         };
-        let (widest, unknown) = (width.larger(p.width).larger(s.width), k(f64::INFINITY));
+        let (widest, unknown) = (self.widest(&bows), k(f64::INFINITY));
         Rates {
             speed: widest.below(WIDE, known.speed, unknown),
             acceleration: widest.below(WIDE, known.acceleration, unknown),

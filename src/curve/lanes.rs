@@ -10,9 +10,9 @@
 //! plain way.
 
 use super::motion::Motion;
-use super::rule::{Broad, Formula, Neighbour, Paced, Span};
+use super::rule::{Broad, End, Formula, Neighbour, Paced, Span};
 use super::{Arc, Rates, Tcb};
-use crate::math::{Lane, Quat, Vec3, widest};
+use crate::math::{Lane, Number, Quat, Vec3, widest};
 use fearless_simd::{Simd, dispatch};
 
 /// How many segments are worked out side by side.
@@ -102,7 +102,7 @@ pub(super) struct Kernels {
     points: fn(&Columns) -> Rows,
     /// Rates of each by seconds: speeds, then accelerations.
     paces: fn(&Columns) -> [[f64; WIDTH]; 2],
-    is_tame: fn(&[Quat; 4], &[f64; 3]) -> bool,
+    is_tame: fn(&Span) -> bool,
 }
 
 impl Kernels {
@@ -152,11 +152,31 @@ impl Window<'_> {
         [b - a, c - b, d - c]
     }
 
+    fn span(&self) -> Span {
+        inner_span(*self.keys, self.intervals(), Tcb::default())
+    }
+
     /// Whether no interval is many times another, and the scheme has nothing against it.
     fn is_tame(&self) -> bool {
         let intervals = self.intervals();
         let [a, b, c] = intervals;
-        a.max(b).max(c) <= UNEVEN * a.min(b).min(c) && (self.kernels.is_tame)(self.keys, &intervals)
+        a.max(b).max(c) <= UNEVEN * a.min(b).min(c) && (self.kernels.is_tame)(&self.span())
+    }
+}
+
+/// The span of a segment with a neighbour on either side, neither at an end.
+#[inline(always)]
+fn inner_span<N: Number>(keys: [Quat<N>; 4], [before, own, after]: [N; 3], tcb: Tcb) -> Span<N> {
+    Span {
+        before: Some(Neighbour { key: keys[0], h: before, is_end: false }),
+        start: keys[1],
+        end: keys[2],
+        h: own,
+        after: Some(Neighbour { key: keys[3], h: after, is_end: false }),
+        end_rule: End::Natural,
+        intervals: [before, before, own, after, after],
+        velocities: [Vec3::new(N::from(0.0), N::from(0.0), N::from(0.0)); 2],
+        tcb,
     }
 }
 
@@ -272,17 +292,7 @@ impl Columns {
         let part = |key: usize, part: usize| Lane(self.keys[key][part][lane]);
         let key = |k| Quat { w: part(k, 0), v: Vec3::new(part(k, 1), part(k, 2), part(k, 3)) };
         let [before, own, after] = [0, 1, 2].map(|k| Lane(self.intervals[k][lane]));
-        Span {
-            before: Some(Neighbour { key: key(0), h: before, is_end: false }),
-            start: key(1),
-            end: key(2),
-            h: own,
-            after: Some(Neighbour { key: key(3), h: after, is_end: false }),
-            end_rule: super::rule::End::Natural,
-            intervals: [before, before, own, after, after],
-            velocities: [Vec3::new(Lane(0.0), Lane(0.0), Lane(0.0)); 2],
-            tcb: self.tcb,
-        }
+        inner_span([key(0), key(1), key(2), key(3)], [before, own, after], self.tcb)
     }
 }
 

@@ -104,9 +104,9 @@ pub(super) trait Broad {
     type Curve<N: Number>: Formula<N> + Paced<N>;
     fn curve<N: Number>(span: &Span<N>) -> Self::Curve<N>;
 
-    /// Whether the formulas keep their digits for a segment of these keys, its own two in the
-    /// middle, and these intervals, of which none is many times another.
-    fn is_tame(_keys: &[Quat; 4], _intervals: &[f64; 3]) -> bool {
+    /// Whether the formulas keep their digits for a segment with a neighbour on either side, of whose
+    /// intervals none is many times another.
+    fn is_tame(_span: &Span) -> bool {
         true
     }
 }
