@@ -1,6 +1,6 @@
 //! Which keys an output gets, and what numbers and players make of them.
 
-use super::{named, positive, step};
+use super::words::{named, positive, step};
 use clap::Args;
 use clap::builder::ValueParser;
 use dat2glb::convert::{Fewest, Sampling};

@@ -1,9 +1,9 @@
 //! `dat2glb plot`.
 
+use super::flags::{OrderFlag, Tangents};
+use super::path::Along;
 use super::pixels::size;
-use super::{
-    Along, OrderFlag, Schemes, Tangents, each_once, ends, frame, named, positive, schemes, tolerance,
-};
+use super::words::{Schemes, each_once, ends, frame, named, positive, schemes, tolerance};
 use clap::{Args, ValueHint};
 use dat2glb::curve::{Ends, Scheme};
 use dat2glb::orient::Frame;

@@ -1,6 +1,6 @@
 //! Arguments of `dat2glb thumbnail`.
 
-use super::RendererFlag;
+use super::flags::RendererFlag;
 use super::pixels::{pair, size};
 use clap::{Args, ValueHint};
 use dat2glb::render::{Background, Time};

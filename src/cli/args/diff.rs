@@ -1,0 +1,62 @@
+//! `dat2glb diff`.
+
+#[cfg(feature = "render")]
+use super::flags::RendererFlag;
+use super::flags::ReportFlag;
+#[cfg(feature = "render")]
+use super::pixels::size;
+use super::words::degrees;
+use clap::{Args, ValueHint};
+use std::path::PathBuf;
+
+#[derive(Args, Debug)]
+pub(crate) struct Diff {
+    /// The first file, as it was: .glb, .gltf
+    #[arg(value_name = "A", value_hint = ValueHint::FilePath)]
+    pub(crate) a: PathBuf,
+    /// The second file, as it is: .glb, .gltf
+    #[arg(value_name = "B", value_hint = ValueHint::FilePath)]
+    pub(crate) b: PathBuf,
+    /// A clip or node OLD of the first file is NEW in the second; may be said several
+    /// times
+    #[arg(long, value_name = "OLD=NEW", value_parser = mapping)]
+    pub(crate) map: Vec<(String, String)>,
+    /// The largest angle, degrees, by which a node may be turned differently, locally and
+    /// in the world
+    #[arg(long, value_name = "DEG", value_parser = degrees)]
+    pub(crate) max_error: Option<f64>,
+    /// The largest distance, units, between the places of a node, locally and in the world
+    #[arg(long, value_name = "UNITS", value_parser = degrees)]
+    pub(crate) max_distance: Option<f64>,
+    /// The largest difference of a scale
+    #[arg(long, value_name = "X", value_parser = degrees)]
+    pub(crate) max_scale: Option<f64>,
+    /// The largest difference of a morph weight
+    #[arg(long, value_name = "X", value_parser = degrees)]
+    pub(crate) max_weight: Option<f64>,
+    /// Warnings fail too: clips, nodes and channels that only one file has
+    #[arg(long)]
+    pub(crate) strict: bool,
+    /// Draw both poses where they differ most, the first file on the left
+    #[cfg(feature = "render")]
+    #[arg(long, value_name = "OUT.png", value_hint = ValueHint::FilePath)]
+    pub(crate) picture: Option<PathBuf>,
+    /// Width and height of each half of the picture in pixels
+    #[cfg(feature = "render")]
+    #[arg(long, value_name = "WxH", default_value = "512x512", requires = "picture", value_parser = size)]
+    pub(crate) size: (u32, u32),
+    #[cfg(feature = "render")]
+    #[command(flatten)]
+    pub(crate) renderer: RendererFlag,
+    #[command(flatten)]
+    pub(crate) report: ReportFlag,
+    /// Print nothing but what cannot be read; the exit code tells
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+fn mapping(text: &str) -> Result<(String, String), String> {
+    let names = text.split_once('=').filter(|(old, new)| !old.is_empty() && !new.is_empty());
+    let (old, new) = names.ok_or_else(|| "expected two names, such as Hips=pelvis".to_owned())?;
+    Ok((old.to_owned(), new.to_owned()))
+}
