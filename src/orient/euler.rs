@@ -20,7 +20,9 @@ pub struct Euler {
 impl Euler {
     /// The rotation of these angles, in the convention of axes in which they are meant.
     pub fn rotation(self) -> Quat {
-        let half = |degrees: f64| degrees.to_radians() / 2.0;
+        // Two whole turns leave the quaternion as it is, and this remainder is exact: so angles of
+        // any size keep their digits.
+        let half = |degrees: f64| (degrees % 720.0).to_radians() / 2.0;
         Quat::exp(Vec3::new(0.0, 0.0, half(self.yaw)))
             * Quat::exp(Vec3::new(0.0, half(self.pitch), 0.0))
             * Quat::exp(Vec3::new(half(self.roll), 0.0, 0.0))
@@ -82,6 +84,20 @@ mod tests {
                 let near = |a: f64, b: f64| wrapped((a - b).to_radians()).to_degrees().abs() < limit;
                 assert!(near(back.roll, angles.roll) && near(back.yaw, angles.yaw), "{angles:?} {back:?}");
             }
+        }
+    }
+
+    #[test]
+    fn whole_turns_change_nothing_however_many() {
+        let few = Euler { roll: 30.0, pitch: -20.0, yaw: 50.0 };
+        for turns in [-2.0, 2.0, 1e6, 2f64.powi(40)] {
+            let many = Euler { roll: few.roll + 360.0 * turns, yaw: few.yaw - 360.0 * turns, ..few };
+            let (many, few) = (many.rotation(), few.rotation());
+            assert!(many.angle_to(few) < 3e-15 && many.dot(few) > 0.0, "{turns}");
+        }
+        for huge in [1e155, -1e300, f64::MAX] {
+            let q = Euler { roll: huge, pitch: huge, yaw: huge }.rotation();
+            assert!((q.norm() - 1.0).abs() < 1e-15);
         }
     }
 

@@ -2,6 +2,7 @@
 
 use crate::math::{Quat, Vec3};
 use glam::{DMat3, DQuat, DVec3};
+use std::f64::consts::TAU;
 
 /// Directions whose sum is shorter than this are opposite: both round to unit length,
 /// so that the plane between them is noise of 1e-16 / 1e-8.
@@ -85,7 +86,8 @@ pub(crate) fn turned(q: Quat, v: DVec3) -> DVec3 {
 
 /// The rotation about forward, radians.
 pub(super) fn roll(angle: f64) -> Quat {
-    Quat::exp(Vec3::new(0.0, 0.0, angle / 2.0))
+    // Of so many turns as a lean may be asked for, what is left of two.
+    Quat::exp(Vec3::new(0.0, 0.0, (angle % (2.0 * TAU)) / 2.0))
 }
 
 #[cfg(test)]

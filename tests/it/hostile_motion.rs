@@ -256,6 +256,21 @@ fn paths_with_points_a_microsecond_and_a_year_apart() {
     }
 }
 
+/// So many turns that the square of the angle is no number.
+#[test]
+fn angles_of_any_size() {
+    let rate = samplings()[0];
+    for huge in [1e18, 1e155, -3.3e170, f64::MAX] {
+        let text = format!("# euler\n0 {huge:e} 3 8\n1 40 {huge:e} 9\n2 -6 0 {huge:e}\n3 0 0 150\n");
+        for &scheme in Scheme::ALL {
+            assert!(is_sound_or_refused("huge angles", &text, plain(scheme, Shape::default(), rate)));
+        }
+        let (bank, text) = (huge, "# catmull-rom 4\n0 0 0\n2 0 1\n3 0 4\n0 1 5\n");
+        let banked = Shape { bank, orient: Some(Orient::Upright), ..Shape::default() };
+        assert!(is_sound_or_refused("huge bank", text, plain(Scheme::Bessel, banked, rate)));
+    }
+}
+
 /// A million keys that never move, in a build that is not optimised much.
 #[test]
 fn a_million_keys_that_never_move() {
