@@ -5,6 +5,7 @@ use super::facts::Seen;
 use crate::math::Quat;
 use crate::moves::{Ground, Move, Mover, Turn};
 use crate::reduce::{self, Attitude, CubicKeys, Curve, Numbers, Travelling, Turning};
+use crate::sample::blend;
 use crate::sample::{Encoding, Steps};
 use crate::write::Interpolation;
 use rayon::prelude::*;
@@ -140,7 +141,7 @@ fn chosen(
     encoding: Encoding,
 ) -> Result<Chosen, Unkept> {
     let coded = encoding == Encoding::Normalized16;
-    let reserve = if coded { reserve(encoding, fewest.max_step) } else { 0.0 };
+    let reserve = if coded { reserve(encoding, widest(a_move, fewest)) } else { 0.0 };
     let options = reduce::Options {
         tolerance: allowed,
         reserve: if matches!(a_move, Move::Travel(_)) { 0.0 } else { reserve },
@@ -222,9 +223,22 @@ fn cubic_keys<const N: usize>(
 /// What coding adds to a playback's error: between two keys, each off by at most the
 /// largest error e, the arc between them is off by at most e / cos(step / 4), the step
 /// being the angle of the rotation from key to key (the norm of a Jacobi field of the unit
-/// sphere at the middle of the arc, where it is largest).
+/// sphere at the middle of the arc, where it is largest). Lengths that are less even pull the
+/// blend about besides.
 fn reserve(encoding: Encoding, step: f64) -> f64 {
-    encoding.largest_error() / (step.to_radians() / 4.0).cos()
+    let half = step.to_radians() / 2.0;
+    let pulled = 2.0 * blend::uneven_lengths(half, encoding.lengths());
+    encoding.largest_error() / (half / 2.0).cos() + pulled.to_degrees()
+}
+
+/// The largest turn from key to key, degrees: over the ramp of a jump it may be any.
+fn widest(a_move: &Move, fewest: &Fewest) -> f64 {
+    let jumps = match a_move {
+        Move::Keys(motion) => motion.ramp().is_some(),
+        Move::Attitude(Turn { ramps, .. }) => !ramps.is_empty(),
+        Move::Travel(_) => false,
+    };
+    if jumps { 180.0 } else { fewest.max_step }
 }
 
 /// Keys as a file with fewer digits holds them.

@@ -50,7 +50,7 @@ pub(super) fn prove<C: Curve>(
         tolerance,
         linear: worst,
         other: worst,
-        uneven: [0.0; 2],
+        uneven: 0.0,
         moved: 0.0,
         proven: vec![keys[0]],
     };
@@ -68,8 +68,8 @@ pub(super) fn prove<C: Curve>(
     }
     Ok(Proven {
         keys: proof.proven,
-        deviation: (proof.linear.bound() + proof.uneven[0]).min(tolerance).max(beyond),
-        other: (proof.other.bound() + proof.uneven[1]).max(beyond),
+        deviation: (proof.linear.bound() + proof.uneven).min(tolerance).max(beyond),
+        other: (proof.other.bound() + proof.uneven).max(beyond),
         moved: proof.moved,
     })
 }
@@ -88,7 +88,7 @@ struct Proof<'a, C: Curve> {
     linear: Worst,
     other: Worst,
     /// What players differ by at most over keys whose lengths are not quite one.
-    uneven: [f64; 2],
+    uneven: f64,
     moved: f64,
     proven: Vec<Key<C::Value>>,
 }
@@ -113,7 +113,7 @@ impl<C: Curve> Proof<'_, C> {
     fn add(&mut self, part: Self) {
         self.linear.add(&part.linear);
         self.other.add(&part.other);
-        self.uneven = [0, 1].map(|blend| self.uneven[blend].max(part.uneven[blend]));
+        self.uneven = self.uneven.max(part.uneven);
         self.moved = self.moved.max(part.moved);
         self.proven.extend(part.proven);
     }
@@ -151,7 +151,7 @@ impl<C: Curve> Proof<'_, C> {
             return self.interval(middle, b, halvings - 1);
         }
         self.linear.add(&linear);
-        self.uneven[0] = self.uneven[0].max(uneven);
+        self.uneven = self.uneven.max(uneven);
         self.moved = parts[1..].iter().map(|(part, _)| part.at_from).fold(self.moved, f64::max);
         if self.curve.knots().binary_search_by(|knot| knot.total_cmp(&f64::from(a.time))).is_ok() {
             self.moved = self.moved.max(parts[0].0.at_from);
@@ -167,7 +167,6 @@ impl<C: Curve> Proof<'_, C> {
                 let part = Part { at_from: gap.at(part.from), at_to: gap.at(part.to), ..part };
                 bound_part(&mut self.other, &gap, part, rates);
             }
-            self.uneven[1] = self.uneven[1].max((blend.uneven_lengths)(way));
         }
         self.proven.push(b);
         Ok(())

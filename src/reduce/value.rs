@@ -83,8 +83,6 @@ pub struct OtherBlend<V> {
     /// Upper bounds of its speed and acceleration for two values so far apart, from one
     /// u to another.
     pub rates: fn(f64, f64, f64) -> Rates,
-    /// What players may differ by where two keys are so far apart.
-    pub uneven_lengths: fn(f64) -> f64,
     /// How far this blend gets from playback between two keys so far apart, at most.
     pub drift: fn(f64) -> f64,
 }
@@ -133,14 +131,13 @@ impl Value for Quat {
     }
 
     fn uneven_lengths(way: f64) -> f64 {
-        blend::uneven_lengths(Blend::Slerp, way)
+        blend::uneven_lengths(way, blend::LENGTHS)
     }
 
     fn other_blend() -> Option<OtherBlend<Quat>> {
         Some(OtherBlend {
             between: |a, b, u| Blend::Nlerp.between(a, b, u),
             rates: blend::rates,
-            uneven_lengths: |way| blend::uneven_lengths(Blend::Nlerp, way),
             drift: blend::largest_drift,
         })
     }

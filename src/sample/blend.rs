@@ -37,17 +37,22 @@ impl Blend {
 
 /// How much the lengths of two quaternions of four float32 numbers can differ: each
 /// number is within 2⁻²⁵ of what makes its length 1.
-const LENGTHS: f64 = 1.2e-7;
+pub(crate) const LENGTHS: f64 = 1.2e-7;
+
+/// How much the lengths of neighbours differ, at most, or [`LENGTHS`]: quaternions of numbers
+/// with fewer digits are less even.
+pub(crate) fn lengths(written: &[[f32; 4]]) -> f64 {
+    let length = |q: &[f32; 4]| q.iter().map(|&x| f64::from(x) * f64::from(x)).sum::<f64>().sqrt();
+    let difference = |pair: &[[f32; 4]]| (length(&pair[0]) - length(&pair[1])).abs();
+    written.windows(2).map(difference).fold(LENGTHS, f64::max)
+}
 
 /// What players may differ by, half an angle, in blending keys whose lengths are not
-/// quite one and which are `turn` apart: the longer of two pulls the blend towards it,
-/// by at most the difference of their lengths times a quarter of the way between them,
-/// or by `nlerp` u(1−u) sin φ / D of it, at most tan(φ/2) / 2.
-pub(crate) fn uneven_lengths(blend: Blend, turn: f64) -> f64 {
-    match blend {
-        Blend::Slerp => 0.25 * LENGTHS * turn,
-        Blend::Nlerp => 0.5 * LENGTHS * (0.5 * turn).tan(),
-    }
+/// quite one, but differ by so much, and which are `turn` apart: the longer of two pulls the blend
+/// towards it, by at most the difference of their lengths times sin uφ sin (1−u)φ / sin φ if it is one
+/// of sines, or u(1−u) sin φ / D by `nlerp`: of either the half way is the most, tan(φ/2) / 2.
+pub(crate) fn uneven_lengths(turn: f64, lengths: f64) -> f64 {
+    0.5 * lengths * (0.5 * turn).tan()
 }
 
 /// Below this turn the drift is taken for a cube: digits would cancel.
@@ -181,7 +186,7 @@ mod tests {
                 0.5 * p.angle_to(q)
             });
             let worst = pulls.fold(0.0, f64::max);
-            let said = uneven_lengths(Blend::Nlerp, turn);
+            let said = uneven_lengths(turn, LENGTHS);
             assert!(worst <= said + 1e-14 && worst > 0.99 * said, "{worst:e} {said:e}");
         }
     }

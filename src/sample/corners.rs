@@ -9,7 +9,7 @@
 
 mod frame;
 
-use super::blend::{self, Blend};
+use super::blend;
 use super::deviation::{NEGLIGIBLE, written};
 use super::interlude::{on_stretch, whole};
 use super::translations::{Travel, straight_bound};
@@ -189,7 +189,7 @@ impl Chain<'_> {
     fn uneven_lengths(&self) -> f64 {
         let turn = |q: &[[f32; 4]]| 0.5 * written(q[0]).angle_to(written(q[1]));
         let largest = |limb: &Limb| limb.written.windows(2).map(turn).fold(0.0, f64::max);
-        let uneven = |limb: &Limb| 2.0 * blend::uneven_lengths(Blend::Slerp, largest(limb));
+        let uneven = |limb: &Limb| 2.0 * blend::uneven_lengths(largest(limb), blend::lengths(limb.written));
         self.limbs.iter().map(uneven).sum::<f64>() * self.reach()
     }
 }

@@ -62,8 +62,9 @@ pub(super) fn upper_bounds(stretch: &Stretch) -> Bounds {
         }
     }
     let largest = search.turns.iter().copied().fold(0.0, f64::max);
-    let bound = |worst: Worst, blend| 2.0 * (worst.bound() + blend::uneven_lengths(blend, largest));
-    Bounds { slerp: bound(search.slerp, Blend::Slerp), nlerp: bound(search.nlerp, Blend::Nlerp) }
+    let uneven = blend::uneven_lengths(largest, blend::lengths(stretch.written));
+    let bound = |worst: Worst| 2.0 * (worst.bound() + uneven);
+    Bounds { slerp: bound(search.slerp), nlerp: bound(search.nlerp) }
 }
 
 /// The bounds of a stretch whose samples are held, each until the next.

@@ -7,6 +7,7 @@ use dat2glb::convert::{Options, Plan, Sampling};
 use dat2glb::curve::{Ends, Scheme};
 use dat2glb::moves::{Ground, Inputs, Shape};
 use dat2glb::read;
+use dat2glb::sample::{Encoding, Writing};
 use proptest::prelude::*;
 use std::fmt::Write as _;
 use std::io::Cursor;
@@ -62,6 +63,7 @@ proptest! {
         ends in prop::sample::select(Ends::ALL.to_vec()),
         fps in prop::sample::select(vec!["60", "24", "10", "30000/1001", "240"]),
         key_times in any::<bool>(),
+        encoding in prop::sample::select(vec![Encoding::Float, Encoding::Normalized16]),
     ) {
         let keyframes = read::keyframes("random.dat", clip.text(order).as_bytes(), None).unwrap();
         let ends = if ends.accept(&keyframes.clip).is_ok() { ends } else { Ends::Natural };
@@ -73,7 +75,7 @@ proptest! {
             inputs: vec!["random.dat".into()],
             schemes: vec![scheme],
             sampling: Sampling::Rate { fps: fps.parse().unwrap(), key_times },
-            writing: Default::default(),
+            writing: Writing { encoding, ..Writing::default() },
         };
         let boxes = keyframes.clip.tracks.len();
         let inputs = Inputs { keyframes: Some(keyframes), path: None, cameras: Vec::new() };
@@ -98,7 +100,8 @@ proptest! {
             let largest = found.difference.largest();
             // But for the last digits of float64.
             prop_assert!(largest.off <= facts.deviation.unwrap() + 1e-12, "{found:?} {facts:?}");
-            prop_assert!(found.difference.samples.off < 3e-5, "{found:?}");
+            let rounding = if encoding == Encoding::Float { 3e-5 } else { encoding.largest_error() };
+            prop_assert!(found.difference.samples.off < rounding, "{found:?}");
         }
     }
 }
