@@ -455,7 +455,8 @@ fn turned(a_move: &Move, t: f64) -> Quat {
     match a_move {
         Move::Keys(motion) if motion.is_step() => {
             let times = motion.times();
-            let next = times.partition_point(|&key| key as f32 <= t as f32);
+            // What the moment of a copy is rounded by is far less than from one float32 to the next.
+            let next = times.partition_point(|&key| f64::from(key as f32) <= t * (1.0 + 1e-10));
             motion.at(times[next.saturating_sub(1)])
         }
         other => other.turned(t),

@@ -274,6 +274,17 @@ fn held_poses_are_steps_with_a_key_each() {
     run(["convert", text(&input), "-o", text(&output)].iter().chain(&copies)).exits(1).says(&["--repeat"]);
 }
 
+/// Between two neighbouring float32 times the first is still held.
+#[test]
+fn held_poses_may_be_as_near_as_float32_times() {
+    let (folder, output) = output();
+    let input = folder.path().join("in.dat");
+    std::fs::write(&input, "# 1 2\n0 1 0 0 0\n44.875103 0 1 0 0\n44.875106 0 0.6 0.8 0\n45 1 0 0 0\n")
+        .unwrap();
+    convert(&input, &output, &["--scheme", "step"]);
+    run(["check", text(&output), "--against", text(&input)]).exits(0);
+}
+
 #[test]
 fn places_are_as_exact_as_the_path_is_wide_wherever_it_lies() {
     let (folder, output) = output();
