@@ -53,7 +53,8 @@ impl Part {
     }
 }
 
-/// Settles what it can of all intervals; returns the others: first those of which nothing is known, in order.
+/// Settles what it can of all intervals; returns the others: first those of which nothing is
+/// known, in order.
 pub(super) fn sift(search: &mut Search) -> Vec<Open> {
     let (mut parts, mut open) = cut(search);
     meet_keys(search, &mut parts);
