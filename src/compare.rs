@@ -5,34 +5,23 @@
 //! docs/math/compare.md.
 
 mod chord;
+mod keys;
 mod peaks;
 mod quadrature;
 
 #[cfg(test)]
 mod tests;
 
+pub use keys::{KeysNeeded, MAX_STEP, MOST_KEYS, TOLERANCES};
+
 use crate::clip::{Clip, Through};
 use crate::curve::{Arc, Ends, Motion, NotClosed, Piece, Scheme};
 use crate::math::{Jet, Quat, Vec3};
-use crate::reduce::{self, Turning};
+use crate::reduce::is_corner;
 use chord::Chord;
+use quadrature::{Rule, Stretch};
 use rayon::prelude::*;
 use serde::Serialize;
-
-/// How exactly playback is to follow the curve where keys are counted, degrees.
-pub const TOLERANCES: [f64; 3] = [0.1, 0.01, 0.001];
-
-/// The largest turn between two keys that are counted, degrees: what keeps viewers that
-/// blend quaternions and normalise near those that turn at constant speed.
-pub const MAX_STEP: f64 = 18.0;
-
-/// About how many keys are counted at most, in all or for each of the motion's own. A
-/// scheme can need any number: keys close in time make some turn thousands of times before
-/// a far next one.
-const MOST_KEYS: [usize; 2] = [100_000, 64];
-
-/// A time and a rotation in float32.
-const BYTES_PER_KEY: u64 = 4 + 16;
 
 /// What is known of one motion. Degrees and seconds.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -83,18 +72,6 @@ pub struct Jumps {
     pub acceleration: Peak,
 }
 
-/// What LINEAR playback needs to stay near a motion.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct KeysNeeded {
-    /// How near, degrees.
-    pub tolerance: f64,
-    /// Keys, at most [`MAX_STEP`] apart; none where float32 cannot keep the tolerance, or
-    /// where it would take more than about a hundred thousand, and 64 for each key there is.
-    pub keys: Option<usize>,
-    /// Their times and rotations in a file.
-    pub bytes: Option<u64>,
-}
-
 /// What is known of one box, by scheme.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BoxFigures {
@@ -116,7 +93,8 @@ pub struct Method {
 }
 
 /// The figures of a clip's boxes, of `only` one (from 0) or of all, by some schemes.
-/// Control rotations need neither schemes nor ends.
+/// Control rotations need neither schemes nor ends. Keys are counted as long as there are
+/// no more than [`MOST_KEYS`] in all, and estimated after that.
 ///
 /// Fails where other schemes than slerp are to close ends that do not meet.
 pub fn clip(
@@ -129,70 +107,126 @@ pub fn clip(
     if !controls && schemes.iter().any(|&scheme| scheme != Scheme::Slerp) {
         ends.accept(clip)?;
     }
-    let methods: Vec<Option<Scheme>> =
+    let schemes: Vec<Option<Scheme>> =
         if controls { vec![None] } else { schemes.iter().copied().map(Some).collect() };
-    let tracks: Vec<usize> = (0..clip.tracks.len()).filter(|i| only.is_none_or(|only| only == *i)).collect();
-    let of_track = |&track: &usize| {
-        let method = |&scheme: &Option<Scheme>| Method {
-            scheme: scheme.map(Scheme::name),
-            figures: track_figures(clip, track, scheme, ends),
-        };
-        BoxFigures { index: track + 1, methods: methods.par_iter().map(method).collect() }
-    };
-    Ok(tracks.par_iter().map(of_track).collect())
+    let tracks = (0..clip.tracks.len()).filter(|i| only.is_none_or(|only| only == *i));
+    let rows: Vec<Row> = tracks
+        .flat_map(|track| schemes.iter().map(move |&scheme| Row { clip, track, scheme, ends }))
+        .collect();
+    let mut figures: Vec<Figures> = rows.par_iter().map(Row::estimated).collect();
+    let counted = keys::affordable(figures.iter().map(|figures| &figures.keys));
+    let count =
+        |(figures, row): (&mut Figures, &Row)| keys::count(&mut figures.keys, counted, || row.motion());
+    figures.par_iter_mut().zip(&rows).for_each(count);
+    let mut boxes: Vec<BoxFigures> = Vec::new();
+    for (Row { track, scheme, .. }, figures) in rows.iter().zip(figures) {
+        let (index, method) = (track + 1, Method { scheme: scheme.map(Scheme::name), figures });
+        match boxes.last_mut().filter(|last| last.index == index) {
+            Some(same) => same.methods.push(method),
+            None => boxes.push(BoxFigures { index, methods: vec![method] }),
+        }
+    }
+    Ok(boxes)
 }
 
-/// One track by one scheme, or along its control rotations.
-fn track_figures(clip: &Clip, track: usize, scheme: Option<Scheme>, ends: Ends) -> Figures {
-    let (times, rotations) = (&clip.times, &clip.tracks[track]);
-    let Some(scheme) = scheme else {
+/// What has figures of its own: a track by a scheme, or along its control rotations.
+struct Row<'a> {
+    clip: &'a Clip,
+    track: usize,
+    scheme: Option<Scheme>,
+    ends: Ends,
+}
+
+impl Row<'_> {
+    fn motion(&self) -> Motion<'_> {
+        let (times, rotations) = (&self.clip.times, &self.clip.tracks[self.track]);
+        match self.scheme {
+            Some(scheme) => Motion::new(times, rotations, scheme, self.ends),
+            None => Motion::through_controls(times, rotations),
+        }
+    }
+
+    fn estimated(&self) -> Figures {
+        let rotations = &self.clip.tracks[self.track];
+        if self.scheme.is_some() {
+            return estimated(&self.motion(), rotations, self.ends == Ends::Closed);
+        }
         let keys: Vec<Quat> = rotations.iter().copied().step_by(3).collect();
-        return motion(Motion::through_controls(times, rotations), &keys, false);
-    };
-    motion(Motion::new(times, rotations, scheme, ends), rotations, ends == Ends::Closed)
+        estimated(&self.motion(), &keys, false)
+    }
 }
-
-/// In how many parts each piece is integrated: some schemes swing round within a fraction
-/// of a segment.
-const PARTS: u32 = 8;
 
 /// The figures of a motion. `keys` are the rotations at its times, with continuous signs;
 /// a motion that `loops` also meets itself where its end runs into its start.
 pub fn motion(motion: Motion, keys: &[Quat], loops: bool) -> Figures {
-    let pieces = pieces(&motion);
+    let mut figures = estimated(&motion, keys, loops);
+    let counted = keys::affordable([&figures.keys]);
+    keys::count(&mut figures.keys, counted, || motion);
+    figures
+}
+
+/// The figures of a motion, keys not counted yet.
+fn estimated(motion: &Motion, keys: &[Quat], loops: bool) -> Figures {
+    let pieces = pieces(motion);
     let times = motion.times();
     // Closed ends move the last key.
     let end = if loops { motion.at(times[times.len() - 1]) } else { keys[keys.len() - 1] };
     let key = |i: usize| if i + 1 == keys.len() { end } else { keys[i] };
+    let rule = Rule::new();
     let mut peaks = [Peak { value: 0.0, time: times[0] }; 4];
-    // Integrals of the squares of speed and acceleration, of speed, and of the
-    // acceleration's root.
-    let (mut integrals, mut duration) = ([0.0; 4], 0.0);
-    let nodes = quadrature::nodes();
-    for piece in &pieces {
+    let (mut squares, mut duration) = ([0.0; 2], 0.0);
+    let mut needed = keys::Estimate::default();
+    for (i, piece) in pieces.iter().enumerate() {
+        if i > 0 && is_corner(&pieces[i - 1], piece) {
+            needed.stop();
+        }
         let after = times.partition_point(|&t| t <= piece.start).clamp(1, times.len() - 1);
         let chord = Chord::new(key(after - 1), key(after), piece.at(0.0));
-        peaks::raise(&mut peaks, piece, |u| measures(piece, &chord, u));
-        for (part, (u, weight)) in (0..PARTS).flat_map(|part| nodes.map(|node| (f64::from(part), node))) {
-            let [speed, acceleration, ..] = measures(piece, &chord, (part + u) / f64::from(PARTS));
-            let values = [speed * speed, acceleration * acceleration, speed, acceleration.sqrt()];
-            for (integral, value) in integrals.iter_mut().zip(values) {
-                *integral += weight * piece.duration() * value / f64::from(PARTS);
+        let (measure, seconds) = (|u: f64| measures(piece, &chord, u), piece.duration());
+        for stretch in rule.stretches(measure, |stretch| is_resolved(&rule, stretch, seconds)) {
+            peaks::raise(&mut peaks, &rule, piece, &stretch, measure);
+            for (square, [fine, _]) in squares.iter_mut().zip(mean_squares(&rule, &stretch)) {
+                *square += seconds * fine;
             }
+            needed.add(|f| {
+                seconds * rule.integrals(&stretch, |&[speed, acceleration, ..]| f(speed, acceleration))[0]
+            });
         }
-        duration += piece.duration();
+        duration += seconds;
     }
     let [speed, acceleration, overshoot, stray] = peaks;
-    let [square_speed, square_acceleration, turned, bent] = integrals;
-    let rms = |square: f64| (square / duration).sqrt();
+    let [speed_rms, acceleration_rms] = squares.map(|square: f64| (square / duration).sqrt());
     Figures {
-        speed: Spread { largest: speed, rms: rms(square_speed) },
-        acceleration: Spread { largest: acceleration, rms: rms(square_acceleration) },
+        speed: Spread { largest: speed, rms: speed_rms },
+        acceleration: Spread { largest: acceleration, rms: acceleration_rms },
         jumps: jumps(&pieces, loops),
         overshoot,
         stray,
-        keys: keys_needed(motion, |tolerance| expected_keys(tolerance, turned, bent)),
+        keys: needed.needed(),
     }
+}
+
+/// What rules of two orders may differ by, relatively: the finer then knows twice the digits.
+const AGREE: f64 = 1e-10;
+/// What rounding makes of a rotation, and more.
+const ROUNDING: f64 = 1e-9;
+
+/// Whether the integrals of the squares on a stretch are right, for a piece of so many seconds.
+fn is_resolved(rule: &Rule, stretch: &Stretch<4>, seconds: f64) -> bool {
+    let squares = mean_squares(rule, stretch);
+    let rate = 1.0 / seconds;
+    // A steady turn has accelerations too, which cancel.
+    let rounding = [ROUNDING * rate, ROUNDING * (rate * rate + squares[0][0].to_radians())];
+    squares
+        .iter()
+        .zip(rounding)
+        .all(|([fine, coarse], rounding)| (fine - coarse).abs() <= AGREE * fine + rounding * rounding)
+}
+
+/// What a stretch adds to the means of the squares of speed and acceleration on its piece, by
+/// both rules.
+fn mean_squares(rule: &Rule, stretch: &Stretch<4>) -> [[f64; 2]; 2] {
+    std::array::from_fn(|which| rule.integrals(stretch, |values| values[which] * values[which]))
 }
 
 /// The pieces of a motion but for the ramp that stands for a jump: a jump has no speed.
@@ -250,28 +284,6 @@ fn jumps(pieces: &[Piece], loops: bool) -> Jumps {
     }
     let [rotation, velocity, acceleration] = largest;
     Jumps { rotation, velocity, acceleration }
-}
-
-fn keys_needed(motion: Motion, expected: impl Fn(f64) -> f64) -> [KeysNeeded; TOLERANCES.len()] {
-    let most = MOST_KEYS[0].max(MOST_KEYS[1] * motion.times().len()) as f64;
-    let curve = Turning::new(motion);
-    let count = |tolerance: f64| {
-        let options = reduce::Options { max_step: Some(MAX_STEP), ..reduce::Options::new(tolerance) };
-        let keys = reduce::rotation(&curve, &options).ok()?;
-        Some(keys.times.len())
-    };
-    TOLERANCES.map(|tolerance| {
-        let keys = if expected(tolerance) <= most { count(tolerance) } else { None };
-        KeysNeeded { tolerance, keys, bytes: keys.map(|keys| BYTES_PER_KEY * keys as u64) }
-    })
-}
-
-/// About how many keys a tolerance takes, from the degrees turned in all and the integral
-/// of the acceleration's root. With accelerations of a, an interval of h seconds bends by
-/// a h²/8, which may be twice the tolerance. For what is no number, no end of keys.
-fn expected_keys(tolerance: f64, turned: f64, bent: f64) -> f64 {
-    let keys = (turned / MAX_STEP).max(bent / (16.0 * tolerance).sqrt());
-    if turned.is_finite() && bent.is_finite() { keys } else { f64::INFINITY }
 }
 
 impl Peak {

@@ -4,7 +4,7 @@ use super::args::Compare;
 use super::exit::{Exit, Failure, say, shown};
 use super::files::{self, display_name};
 use dat2glb::clip::{Body, Clip, Warning};
-use dat2glb::compare::{self, BoxFigures, Figures, MAX_STEP, Method, TOLERANCES};
+use dat2glb::compare::{self, BoxFigures, Figures, KeysNeeded, MAX_STEP, Method, TOLERANCES};
 use dat2glb::moves::rotation_keys;
 use dat2glb::read::{Input, Keyframes};
 use std::fmt::Write as _;
@@ -104,12 +104,12 @@ fn block(title: &str, methods: &[Method]) -> String {
     let column = |name: &str, of: &dyn Fn(&Figures) -> f64| {
         std::iter::once(name.to_owned()).chain(numbers.iter().map(|figures| short(of(figures)))).collect()
     };
-    let counted = |name: String, of: &dyn Fn(&Figures) -> Option<u64>| {
-        let cell = |figures| of(figures).map_or("–".to_owned(), |count| count.to_string());
-        std::iter::once(name).chain(numbers.iter().map(cell)).collect()
+    let counted = |i: usize, of: &dyn Fn(&KeysNeeded) -> Option<u64>| {
+        let cell = |figures: &Figures| count(of(&figures.keys[i]), figures.keys[i].counted);
+        std::iter::once(format!("{}°", TOLERANCES[i])).chain(numbers.iter().map(cell)).collect()
     };
     let group = |heading, columns| Group { heading, columns };
-    let keys = |i: usize| counted(format!("{}°", TOLERANCES[i]), &|f| f.keys[i].keys.map(|n| n as u64));
+    let keys = |i: usize| counted(i, &|needed| needed.keys.map(|n| n as u64));
     let groups = [
         group("speed °/s", vec![column("max", &|f| f.speed.largest.value), column("rms", &|f| f.speed.rms)]),
         group(
@@ -123,7 +123,7 @@ fn block(title: &str, methods: &[Method]) -> String {
         group("over-", vec![column("shoot°", &|f| f.overshoot.value)]),
         group("stray", vec![column("°", &|f| f.stray.value)]),
         group("keys for", (0..TOLERANCES.len()).map(keys).collect()),
-        group("bytes", vec![counted(format!("{}°", TOLERANCES[1]), &|f| f.keys[1].bytes)]),
+        group("bytes", vec![counted(1, &|needed| needed.bytes)]),
     ];
     let names = methods.iter().map(|method| method.scheme.unwrap_or("control rotations"));
     let names: Vec<&str> = std::iter::once("scheme").chain(names).collect();
@@ -151,6 +151,19 @@ fn laid_out(title: &str, names: &[&str], groups: &[Group]) -> String {
         }
     }
     lines.iter().map(|line| format!("{}\n", line.trim_end())).collect()
+}
+
+/// A count, or about how many, to three digits.
+fn count(count: Option<u64>, counted: bool) -> String {
+    match count {
+        None => "–".to_owned(),
+        Some(count) if counted => count.to_string(),
+        Some(count) if count >= 10_000_000 => format!("~{:.1e}", count as f64),
+        Some(count) => {
+            let unit = 10u64.pow(count.max(1).ilog10().saturating_sub(2));
+            format!("~{}", (count + unit / 2) / unit * unit)
+        }
+    }
 }
 
 /// What rounding leaves, relative to what it was left of.

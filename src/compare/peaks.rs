@@ -1,35 +1,41 @@
 //! Largest values of smooth functions: a dense look, then a search around what is highest.
 
 use super::Peak;
+use super::quadrature::{PLACES, Rule, Stretch};
 use crate::curve::Piece;
 
-/// Steps in which a piece is looked at.
-const STEPS: usize = 32;
 /// Golden sections; each leaves 0.62 of the stretch, all together 1e-9.
 const SECTIONS: u32 = 44;
 /// What a search must promise to gain, relative to the value.
 const GAIN: f64 = 1e-12;
 
-/// Raises each peak to the largest value of its function on a piece; `f` gives all at a
-/// place u from 0 to 1.
+/// Raises each peak to the largest value of its function on a stretch of a piece; `f` gives all
+/// at a place u of the piece, from 0 to 1.
 ///
-/// A maximum is found if 32 even steps resolve the function: if a parabola through three
-/// neighbouring values shows it, its value is exact to about 1e-12.
-pub(super) fn raise<const N: usize>(peaks: &mut [Peak; N], piece: &Piece, f: impl Fn(f64) -> [f64; N]) {
-    let place = |i: usize| i as f64 / STEPS as f64;
-    let values: [[f64; N]; STEPS + 1] = std::array::from_fn(|i| f(place(i)));
+/// A maximum is found if the stretch's values resolve the function: if a parabola through
+/// three neighbouring ones shows it, its value is exact to about 1e-12. The parabola is one of
+/// the angle whose cosine the places are, in which they are even.
+pub(super) fn raise<const N: usize>(
+    peaks: &mut [Peak; N],
+    rule: &Rule,
+    piece: &Piece,
+    stretch: &Stretch<N>,
+    f: impl Fn(f64) -> [f64; N],
+) {
+    let place = |i: usize| rule.place(stretch, i);
+    let time = |u: f64| piece.start + u * piece.duration();
+    let last = PLACES - 1;
     for (which, peak) in peaks.iter_mut().enumerate() {
-        let value = |i: usize| values[i][which];
-        let time = |u: f64| piece.start + u * piece.duration();
-        for i in 0..=STEPS {
-            let highest = value(i) >= value(i.saturating_sub(1)) && value(i) >= value((i + 1).min(STEPS));
+        let value = |i: usize| stretch.values[i][which];
+        for i in 0..=last {
+            let highest = value(i) >= value(i.saturating_sub(1)) && value(i) >= value((i + 1).min(last));
             if !highest {
                 continue;
             }
             peak.rise(value(i), time(place(i)));
-            let middle = i.clamp(1, STEPS - 1);
+            let middle = i.clamp(1, last - 1);
             if promised([value(middle - 1), value(middle), value(middle + 1)]) > peak.value * (1.0 + GAIN) {
-                let (from, to) = (place(i.saturating_sub(1)), place((i + 1).min(STEPS)));
+                let (from, to) = (place(i.saturating_sub(1)), place((i + 1).min(last)));
                 let (u, found) = highest_between(|u| f(u)[which], from, to);
                 peak.rise(found, time(u));
             }

@@ -60,7 +60,7 @@ impl Turning {
             t = piece.end;
             pieces.push(piece);
         }
-        let meet = |pair: &[Piece]| corner(&pair[0], &pair[1]).then_some(pair[1].start);
+        let meet = |pair: &[Piece]| is_corner(&pair[0], &pair[1]).then_some(pair[1].start);
         let mut corners: Vec<f64> = pieces.windows(2).filter_map(meet).collect();
         // A jump at the end is a jump of the value: the motion rests elsewhere.
         corners.dedup();
@@ -78,7 +78,7 @@ impl Turning {
 }
 
 /// Whether the velocity jumps where two pieces meet.
-fn corner(before: &Piece, after: &Piece) -> bool {
+pub(crate) fn is_corner(before: &Piece, after: &Piece) -> bool {
     let velocity =
         |piece: &Piece, u: f64| piece.at(Jet::<f64>::variable(u)).half_velocity() * (1.0 / piece.duration());
     let (a, b) = (velocity(before, 1.0), velocity(after, 0.0));

@@ -20,6 +20,7 @@ mod tests;
 
 pub(crate) use cubic::Hermite;
 pub use cubic::{CubicKeys, Flat, cubic_numbers, cubic_rotation};
+pub(crate) use curve::is_corner;
 pub use curve::{Attitude, Curve, Travelling, Turning};
 pub(crate) use dense::{Asked, Ends, Near, fewer};
 pub use value::{Numbers, OtherBlend, Step, Value};
