@@ -252,7 +252,7 @@ impl<'a> Motion<'a> {
     }
 
     /// Whether segment i swings round or jumps where slerps that are blended come apart.
-    pub(super) fn swings(&self, i: usize) -> bool {
+    pub(crate) fn swings(&self, i: usize) -> bool {
         matches!(self.segment(i), Shape::Segment(Segment::BarryGoldman(pyramid)) if pyramid.swings())
     }
 

@@ -93,7 +93,7 @@ fn swinging<T: AsRef<[Quat]>>(keys: &Keys<T>, scheme: Scheme, ends: Ends) -> Opt
     }
     let motions: Vec<Motion> =
         keys.tracks.iter().map(|track| Motion::new(keys.times, track.as_ref(), scheme, ends)).collect();
-    let segments = 0..keys.times.len() - 1;
+    let segments = (0..keys.times.len() - 1).into_par_iter();
     let swinging: Vec<usize> = segments.filter(|&i| motions.iter().any(|motion| motion.swings(i))).collect();
     (!swinging.is_empty()).then(|| {
         let message = format!(

@@ -9,10 +9,11 @@ use super::blend::{self, Blend};
 use super::interlude::{Interlude, Playback, bound, on_stretch, whole};
 use super::sieve::{self, Open};
 use super::worst::{Gap, Part, Worst};
-use crate::curve::{Arc, Motion, Piece, Rates};
+use crate::curve::{Motion, Piece, Rates};
 use crate::math::{Quat, half_angles};
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Samples of a motion: exact, and as written.
 pub(super) struct Stretch<'a> {
@@ -37,6 +38,8 @@ const CHEAP: u32 = 3;
 /// far apart would need more than its samples take; but one interval next to a swing can take
 /// a thousand, and has a sixteenth.
 const LEAST_HALVINGS: u32 = 1 << 15;
+/// How many of the intervals of which nothing is known are looked into before all others.
+const SUSPECTS: usize = 4;
 
 /// Upper bounds, radians, of the angle between motion and playback.
 pub(super) struct Bounds {
@@ -46,11 +49,12 @@ pub(super) struct Bounds {
     pub(super) nlerp: f64,
 }
 
-/// The bounds of a stretch.
-pub(super) fn upper_bounds(stretch: &Stretch) -> Bounds {
+/// The bounds of a stretch. Where they say nothing, `hopeless` is set; where it is set already
+/// they may say anything.
+pub(super) fn upper_bounds(stretch: &Stretch, hopeless: &AtomicBool) -> Bounds {
     let mut search = Search::new(stretch);
     let mut open = sieve::sift(&mut search);
-    search.by_pieces(&mut open);
+    search.by_pieces(&mut open, hopeless);
     open.sort_by(|a, b| b.bound.total_cmp(&a.bound));
     for open in open {
         search.look_into(&open);
@@ -63,7 +67,11 @@ pub(super) fn upper_bounds(stretch: &Stretch) -> Bounds {
     }
     let largest = search.turns.iter().copied().fold(0.0, f64::max);
     let uneven = blend::uneven_lengths(largest, blend::lengths(stretch.written));
-    let bound = |worst: Worst| 2.0 * (worst.bound() + uneven);
+    if search.is_hopeless() {
+        search.settle(FRAC_PI_2, FRAC_PI_2);
+        hopeless.store(true, Ordering::Relaxed);
+    }
+    let bound = |worst: Worst| (2.0 * (worst.bound() + uneven)).min(PI);
     Bounds { slerp: bound(search.slerp), nlerp: bound(search.nlerp) }
 }
 
@@ -197,20 +205,29 @@ impl<'a> Search<'a> {
         blend::drift_bound(self.turns[intervals].iter().copied().fold(0.0, f64::max))
     }
 
+    /// Whether nothing can be said of one of the two kinds of playback, or has to be.
+    fn is_hopeless(&self) -> bool {
+        self.slerp.accepts(FRAC_PI_2) || self.nlerp.accepts(FRAC_PI_2)
+    }
+
     /// Of intervals of which nothing is known bounds those of each piece together, as far as that
-    /// goes.
-    fn by_pieces(&mut self, open: &mut Vec<Open>) {
+    /// goes. First those that look worst: if they cannot be bounded, no other matters.
+    fn by_pieces(&mut self, open: &mut Vec<Open>, hopeless: &AtomicBool) {
         let unknown: Vec<usize> =
             open.extract_if(.., |open| open.bound == f64::INFINITY).map(|open| open.interval).collect();
+        self.suspect(&unknown);
         for run in unknown.chunk_by(|a, b| a + 1 == *b) {
             let (mut i, end) = (run[0], run[0] + run.len());
             while i < end {
+                if self.is_hopeless() || hopeless.load(Ordering::Relaxed) {
+                    self.settle(FRAC_PI_2, FRAC_PI_2);
+                    return;
+                }
                 let piece = self.stretch.motion.piece_at(self.time(i));
                 let inside = (i + 1..=end).take_while(|&j| self.time(j) <= piece.end).count();
                 if inside == 0 {
                     open.push(Open { interval: i, bound: f64::INFINITY });
                 } else {
-                    self.probe(&piece, i, i + inside);
                     self.within(&piece, whole(&piece), i..i + inside, open);
                 }
                 i += inside.max(1);
@@ -218,15 +235,13 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Looks half way between the samples i..=j, so that the search knows early what is
-    /// worth refining. There slerp and nlerp are one.
-    fn probe(&mut self, piece: &Piece, i: usize, j: usize) {
-        for k in i..j {
-            let t = 0.5 * (self.time(k) + self.time(k + 1));
-            let played = Blend::Slerp.between(self.playback[k], self.playback[k + 1], 0.5);
-            let at = 0.5 * played.angle_to(piece.at(piece.parameter(t)));
-            self.slerp.note(at);
-            self.nlerp.note(at);
+    /// Looks half way along some intervals, and closely at the worst.
+    fn suspect(&mut self, intervals: &[usize]) {
+        let gaps = sieve::half_way(self, intervals);
+        let mut order: Vec<usize> = (0..intervals.len()).collect();
+        order.sort_by(|&a, &b| gaps[b].total_cmp(&gaps[a]));
+        for suspect in order.into_iter().take(SUSPECTS) {
+            self.across(intervals[suspect]);
         }
     }
 
@@ -272,7 +287,7 @@ impl<'a> Search<'a> {
     /// Bounds an interval that is open, as near as there are halvings for.
     fn look_into(&mut self, open: &Open) {
         let interval = open.interval..open.interval + 1;
-        if self.accept(interval.clone(), open.bound) {
+        if self.accept(interval.clone(), open.bound) || self.is_hopeless() {
             return;
         }
         let spent = self.slerp.is_spent() || self.nlerp.is_spent();

@@ -5,6 +5,7 @@ use super::{Encoding, Steps, Timeline};
 use crate::curve::Motion;
 use crate::math::Quat;
 use rayon::prelude::*;
+use std::sync::atomic::AtomicBool;
 
 /// A rotation as a function of time.
 #[derive(Clone)]
@@ -74,7 +75,8 @@ pub fn rotations<E>(
             motion.solve();
         }
     });
-    let job = |track: usize, chunk| sample(&tracks[track], timeline, writing, chunk);
+    let hopeless: Vec<AtomicBool> = tracks.iter().map(|_| AtomicBool::new(false)).collect();
+    let job = |track: usize, chunk| sample(&tracks[track], timeline, writing, chunk, &hopeless[track]);
     in_order(tracks.len(), timeline.chunks(), job, |track, chunk, mut samples: Chunk| {
         turned &= chunk > 0;
         if turned {
@@ -116,7 +118,14 @@ pub(super) fn in_order<T: Send, E>(
     Ok(())
 }
 
-fn sample(rotation: &Rotation, timeline: &Timeline, writing: Writing, chunk: usize) -> Chunk {
+/// Samples a chunk. One of which no bound says anything makes its whole track `hopeless`.
+fn sample(
+    rotation: &Rotation,
+    timeline: &Timeline,
+    writing: Writing,
+    chunk: usize,
+    hopeless: &AtomicBool,
+) -> Chunk {
     let (before, times) = timeline.chunk(chunk);
     let times: Vec<f32> = before.into_iter().chain(times).collect();
     let exact = match rotation {
@@ -136,7 +145,7 @@ fn sample(rotation: &Rotation, timeline: &Timeline, writing: Writing, chunk: usi
             let bounds = if writing.hold {
                 deviation::held_bounds(&stretch)
             } else {
-                deviation::upper_bounds(&stretch)
+                deviation::upper_bounds(&stretch, hopeless)
             };
             facts.deviation = Some(bounds.slerp.to_degrees());
             facts.nlerp = Some(bounds.nlerp.to_degrees());
@@ -213,5 +222,29 @@ mod tests {
         rotations(&[Rotation::Motion(motion)], &timeline, Writing::default(), sink).unwrap();
         let dots = samples.windows(2).map(|q| (0..4).map(|i| q[0][i] * q[1][i]).sum::<f32>());
         assert!(dots.fold(1.0, f32::min) > 0.0);
+    }
+    #[test]
+    fn a_curve_that_jumps_is_hopeless_on_any_number_of_threads() {
+        let axis =
+            |i: usize| Vec3::new((i as f64).sin(), (1.7 * i as f64).cos(), (2.3 * i as f64 + 1.0).sin());
+        let keys: Vec<Quat> = (0..3000)
+            .scan(Quat::IDENTITY, |q, i| {
+                *q = *q * Quat::exp(axis(i) * (75f64.to_radians() / axis(i).length()));
+                Some(*q)
+            })
+            .collect();
+        let times: Vec<f64> = (0..keys.len()).map(|i| i as f64 * 0.1 + 0.04 * (i as f64).sin()).collect();
+        let motion = Motion::new(&times, &keys, Scheme::BarryGoldman, Ends::Natural);
+        assert!((0..keys.len() - 1).any(|i| motion.swings(i)));
+        let timeline = Timeline::new(&times, None, "60".parse().unwrap(), true).unwrap();
+        assert!(timeline.chunks() > 3);
+        let facts = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let tracks = [Rotation::Motion(motion.clone())];
+            pool.install(|| rotations(&tracks, &timeline, Writing::default(), |_| Ok::<(), ()>(()))).unwrap()
+        };
+        let alone = facts(1);
+        assert_eq!((alone[0].deviation, alone[0].nlerp), (Some(180.0), Some(180.0)));
+        assert_eq!(facts(4), alone);
     }
 }

@@ -128,11 +128,23 @@ fn meet_keys(search: &mut Search, parts: &mut [Part]) {
 
 /// The gap half way along each part.
 fn look_half_way(search: &mut Search, parts: &[Part]) -> Vec<f64> {
-    let times: Vec<f64> = parts.iter().map(Part::middle).collect();
-    let shares: Vec<f64> =
-        parts.iter().zip(&times).map(|(part, &t)| search.share(part.interval, t)).collect();
-    let pairs: Vec<[Quat; 2]> = parts.iter().map(|part| search.ends(part.interval)).collect();
+    let places: Vec<(usize, f64)> = parts.iter().map(|part| (part.interval, part.middle())).collect();
+    look(search, &places)
+}
+
+/// The gap half way along each of some intervals.
+pub(super) fn half_way(search: &mut Search, intervals: &[usize]) -> Vec<f64> {
+    let middle = |&i: &usize| (i, 0.5 * (search.time(i) + search.time(i + 1)));
+    let places: Vec<(usize, f64)> = intervals.iter().map(middle).collect();
+    look(search, &places)
+}
+
+/// The gap at each of some times, each within an interval.
+fn look(search: &mut Search, places: &[(usize, f64)]) -> Vec<f64> {
+    let (intervals, times): (Vec<usize>, Vec<f64>) = places.iter().copied().unzip();
+    let shares: Vec<f64> = places.iter().map(|&(i, t)| search.share(i, t)).collect();
+    let pairs: Vec<[Quat; 2]> = intervals.iter().map(|&i| search.ends(i)).collect();
     let gaps = half_angles(&slerps(&pairs, &shares), &search.motion().at_all(&times));
-    parts.iter().zip(&gaps).for_each(|(part, &gap)| search.note(part.interval, gap));
+    intervals.iter().zip(&gaps).for_each(|(&i, &gap)| search.note(i, gap));
     gaps
 }

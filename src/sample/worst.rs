@@ -66,7 +66,8 @@ struct Open {
 
 impl Ord for Open {
     fn cmp(&self, other: &Open) -> Ordering {
-        self.bound.total_cmp(&other.bound)
+        // Of two that may be as bad the shorter: where nothing helps, that is soon seen.
+        self.bound.total_cmp(&other.bound).then(self.level.cmp(&other.level))
     }
 }
 
@@ -275,6 +276,15 @@ mod tests {
         }
         assert!(worst.is_spent());
         assert_eq!(gap.0.get(), halvings);
+    }
+
+    #[test]
+    fn where_nothing_helps_is_soon_seen() {
+        let (gap, mut worst) = (Unbounded(0.into()), Worst::thrifty(0.0, 1 << 15));
+        let part = Part { from: 0.0, to: 1.0, at_from: 0.0, at_to: 0.0 };
+        assert_eq!(worst.search(&gap, part, gap.rates(0.0, 0.0), 3), 1.0);
+        // Down to the shortest part there is, and no other.
+        assert_eq!(gap.0.get(), DEPTH);
     }
 
     #[test]
