@@ -172,37 +172,62 @@ fn estimated(motion: &Motion, keys: &[Quat], loops: bool) -> Figures {
     // Closed ends move the last key.
     let end = if loops { motion.at(times[times.len() - 1]) } else { keys[keys.len() - 1] };
     let key = |i: usize| if i + 1 == keys.len() { end } else { keys[i] };
-    let rule = Rule::new();
-    let mut peaks = [Peak { value: 0.0, time: times[0] }; 4];
-    let (mut squares, mut duration) = ([0.0; 2], 0.0);
-    let mut needed = keys::Estimate::default();
+    let mut totals = Totals::new(times[0]);
     for (i, piece) in pieces.iter().enumerate() {
         if i > 0 && is_corner(&pieces[i - 1], piece) {
-            needed.stop();
+            totals.needed.stop();
         }
         let after = times.partition_point(|&t| t <= piece.start).clamp(1, times.len() - 1);
-        let chord = Chord::new(key(after - 1), key(after), piece.at(0.0));
-        let (measure, seconds) = (|u: f64| measures(piece, &chord, u), piece.duration());
-        for stretch in rule.stretches(measure, |stretch| is_resolved(&rule, stretch, seconds)) {
-            peaks::raise(&mut peaks, &rule, piece, &stretch, measure);
-            for (square, [fine, _]) in squares.iter_mut().zip(mean_squares(&rule, &stretch)) {
-                *square += seconds * fine;
-            }
-            needed.add(|f| {
-                seconds * rule.integrals(&stretch, |&[speed, acceleration, ..]| f(speed, acceleration))[0]
-            });
-        }
-        duration += seconds;
+        totals.add(piece, &Chord::new(key(after - 1), key(after), piece.at(0.0)));
     }
-    let [speed, acceleration, overshoot, stray] = peaks;
-    let [speed_rms, acceleration_rms] = squares.map(|square: f64| (square / duration).sqrt());
+    let [speed, acceleration, overshoot, stray] = totals.peaks;
+    let [speed_rms, acceleration_rms] = totals.squares.map(|square| (square / totals.seconds).sqrt());
     Figures {
         speed: Spread { largest: speed, rms: speed_rms },
         acceleration: Spread { largest: acceleration, rms: acceleration_rms },
         jumps: jumps(&pieces, loops),
         overshoot,
         stray,
-        keys: needed.needed(),
+        keys: totals.needed.needed(),
+    }
+}
+
+/// What adds up along a motion.
+struct Totals {
+    rule: Rule,
+    /// The largest of all [`measures`].
+    peaks: [Peak; 4],
+    /// Integrals of the squares of speed and acceleration.
+    squares: [f64; 2],
+    seconds: f64,
+    needed: keys::Estimate,
+}
+
+impl Totals {
+    fn new(start: f64) -> Totals {
+        let peaks = [Peak { value: 0.0, time: start }; 4];
+        Totals {
+            rule: Rule::new(),
+            peaks,
+            squares: [0.0; 2],
+            seconds: 0.0,
+            needed: keys::Estimate::default(),
+        }
+    }
+
+    fn add(&mut self, piece: &Piece, chord: &Chord) {
+        let Totals { rule, peaks, squares, needed, .. } = self;
+        let (measure, seconds) = (|u: f64| measures(piece, chord, u), piece.duration());
+        for stretch in rule.stretches(measure, |stretch| is_resolved(rule, stretch, seconds)) {
+            peaks::raise(peaks, rule, piece, &stretch, measure);
+            for (square, [fine, _]) in squares.iter_mut().zip(mean_squares(rule, &stretch)) {
+                *square += seconds * fine;
+            }
+            needed.add(|f| {
+                seconds * rule.integrals(&stretch, |&[speed, acceleration, ..]| f(speed, acceleration))[0]
+            });
+        }
+        self.seconds += seconds;
     }
 }
 

@@ -30,7 +30,7 @@ pub(super) fn run(options: &Check) -> Result<Exit, Failure> {
         };
         subjects.push(Subject { file: file.display().to_string(), outcome });
     }
-    if !options.quiet {
+    if !options.report.quiet {
         let run = Run { command: "check", subjects, fails_from: limit(options), exit: worst as u8 };
         print_document(&run, options.report.format())?;
     }
@@ -72,7 +72,7 @@ fn one(file: &Path, options: &Check) -> Result<Report, Failure> {
         Err(error) => return Err(files::cannot_read(file, &error)),
     };
     files::unchanged()?;
-    if !options.quiet {
+    if !options.report.quiet {
         shown(print(file, options, &report, &motions))?;
     }
     Ok(report)
@@ -110,7 +110,7 @@ fn look(asset: &mut Asset, file: &Path, options: &Check, report: &mut Report) ->
     }
     let look = dat2glb::render::look(asset, (256, 256), options.renderer.renderer)
         .map_err(|error| super::thumbnail::failure(&error, file))?;
-    if !options.quiet {
+    if !options.report.quiet {
         look.notes.iter().for_each(|note| say(&format!("{}: {note}", file.display())));
     }
     if !look.visible() {

@@ -17,7 +17,7 @@ pub(super) fn run(options: &Arguments) -> Result<Exit, Failure> {
     let (exit, file, outcome) = match &compared {
         Ok((_, diff)) => {
             let report = diff.report(&limits(options));
-            if !options.quiet {
+            if !options.report.quiet {
                 shown(print(diff, &report, options))?;
             }
             (judged(&report, fails_from(options)), options.b.as_path(), Ok(report))
@@ -30,7 +30,7 @@ pub(super) fn run(options: &Arguments) -> Result<Exit, Failure> {
             (failure.exit, *file, Err(failure.message.clone()))
         }
     };
-    if !options.quiet {
+    if !options.report.quiet {
         let subjects = vec![Subject { file: name(file), outcome }];
         let run = Run { command: "diff", subjects, fails_from: fails_from(options), exit: exit as u8 };
         print_document(&run, options.report.format())?;
@@ -145,7 +145,7 @@ fn draw(assets: &mut Assets, diff: &Diff, options: &Arguments) -> Result<(), Fai
     let renderer = options.renderer.renderer;
     let picture = side_by_side(left, right, options.size, renderer, Background::default())
         .map_err(|error| super::thumbnail::failure(&error, path))?;
-    if !options.quiet {
+    if !options.report.quiet {
         picture.notes.iter().for_each(|note| say(&format!("{}: {note}", path.display())));
     }
     let failed = |error| Failure::environment(format!("{}: cannot be written: {error}", path.display()));

@@ -179,15 +179,19 @@ mod tests {
         for turn in [0.05, 0.5, 1.5] {
             let (a, b) = keys(turn);
             let long = Quat { w: b.w * (1.0 + LENGTHS), v: b.v * (1.0 + LENGTHS) };
-            let pulls = (0..=100).map(|i| {
-                let u = f64::from(i) / 100.0;
-                let blend = |b| Blend::Nlerp.between(a, b, u);
-                let (p, q) = (blend(b), blend(long));
-                0.5 * p.angle_to(q)
-            });
-            let worst = pulls.fold(0.0, f64::max);
-            let said = uneven_lengths(turn, LENGTHS);
-            assert!(worst <= said + 1e-14 && worst > 0.99 * said, "{worst:e} {said:e}");
+            let straight = |u: f64| [1.0 - u, u];
+            let sines = |u: f64| [((1.0 - u) * turn).sin(), (u * turn).sin()];
+            for weights in [&straight as &dyn Fn(f64) -> [f64; 2], &sines] {
+                let pulls = (0..=100).map(|i| {
+                    let [first, second] = weights(f64::from(i) / 100.0);
+                    let blend =
+                        |b: Quat| Quat { w: a.w * first + b.w * second, v: a.v * first + b.v * second };
+                    0.5 * blend(b).angle_to(blend(long))
+                });
+                let worst = pulls.fold(0.0, f64::max);
+                let said = uneven_lengths(turn, LENGTHS);
+                assert!(worst <= said + 1e-14 && worst > 0.99 * said, "{worst:e} {said:e}");
+            }
         }
     }
 }

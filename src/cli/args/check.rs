@@ -44,7 +44,4 @@ pub(crate) struct Check {
     pub(crate) renderer: RendererFlag,
     #[command(flatten)]
     pub(crate) report: ReportFlag,
-    /// Print nothing but what cannot be read; the exit code tells
-    #[arg(short, long)]
-    pub(crate) quiet: bool,
 }

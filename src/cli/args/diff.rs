@@ -50,9 +50,6 @@ pub(crate) struct Diff {
     pub(crate) renderer: RendererFlag,
     #[command(flatten)]
     pub(crate) report: ReportFlag,
-    /// Print nothing but what cannot be read; the exit code tells
-    #[arg(short, long)]
-    pub(crate) quiet: bool,
 }
 
 fn mapping(text: &str) -> Result<(String, String), String> {

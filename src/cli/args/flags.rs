@@ -64,6 +64,9 @@ pub(crate) struct ReportFlag {
     /// Short for --report json
     #[arg(long, conflicts_with = "report")]
     json: bool,
+    /// Print nothing but what cannot be read; the exit code tells
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
 }
 
 impl ReportFlag {
