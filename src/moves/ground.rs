@@ -99,7 +99,9 @@ impl<'a> Ground<'a> {
     }
 
     fn ramps(&self, scheme: Scheme) -> Vec<f64> {
-        self.moves(scheme).iter().filter_map(|(_, turn)| turn.ramp()).collect()
+        let way = self.way.as_ref().filter(|_| self.orient() == Orient::Keyed);
+        let root = way.map(|way| way.keyed(&self.shape, scheme));
+        self.motions(scheme).chain(root).filter_map(|motion| motion.ramp()).collect()
     }
 
     fn all_camera_knots(&self) -> Vec<f64> {
@@ -168,15 +170,9 @@ impl<'a> Ground<'a> {
 
     /// What of the object moves, by a scheme, in the order in which files hold it.
     pub fn moves(&self, scheme: Scheme) -> Vec<(Mover, Move<'_>)> {
-        let clip = self.inputs.keyframes.as_ref().map(|keyframes| &keyframes.clip);
-        let Shape { ends, tcb, .. } = self.shape;
-        let motion = |keys, through| match through {
-            Through::Keys => Motion::new(&self.key_times, keys, scheme, ends).with_tcb(tcb),
-            Through::Controls => Motion::through_controls(&self.key_times, keys),
-        };
-        let tracks = clip.iter().flat_map(|clip| clip.tracks.iter().map(|keys| motion(keys, clip.through)));
-        let tracks = tracks.enumerate().map(|(i, motion)| (Mover::Track(i), Move::Keys(motion)));
-        let mut moves: Vec<(Mover, Move)> = tracks.collect();
+        let motions = self.motions(scheme).enumerate();
+        let mut moves: Vec<(Mover, Move)> =
+            motions.map(|(i, motion)| (Mover::Track(i), Move::Keys(motion))).collect();
         if let Some(way) = &self.way {
             moves.extend(way.attitude(self.orient(), &self.shape, scheme).map(|turn| (Mover::Root, turn)));
             moves.push((Mover::Root, Move::Travel(Box::new(way))));
@@ -184,11 +180,22 @@ impl<'a> Ground<'a> {
         moves
     }
 
+    /// The tracks of the keyframes in motion.
+    fn motions(&self, scheme: Scheme) -> impl Iterator<Item = Motion<'_>> {
+        let Shape { ends, tcb, .. } = self.shape;
+        let motion = move |keys, through| match through {
+            Through::Keys => Motion::new(&self.key_times, keys, scheme, ends).with_tcb(tcb),
+            Through::Controls => Motion::through_controls(&self.key_times, keys),
+        };
+        let clip = self.inputs.keyframes.as_ref().map(|keyframes| &keyframes.clip);
+        clip.into_iter().flat_map(move |clip| clip.tracks.iter().map(move |keys| motion(keys, clip.through)))
+    }
+
     /// The keys by which the root turns on its way, their times, and what they do at
     /// their ends; where it turns by keys.
     pub fn orientation_keys(&self) -> Option<(&[f64], &[Quat], Ends)> {
         let way = self.way.as_ref().filter(|_| self.orient() == Orient::Keyed)?;
-        let (times, keys) = &way.keyed;
+        let (times, keys) = &way.keys;
         Some((times, keys, way::key_ends(self.shape.ends)))
     }
 

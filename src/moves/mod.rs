@@ -181,14 +181,6 @@ pub struct Turn<'a> {
 }
 
 impl Move<'_> {
-    /// Where the ramp of a jump begins, if there is one.
-    fn ramp(&self) -> Option<f64> {
-        match self {
-            Move::Keys(motion) => motion.ramp(),
-            Move::Attitude(_) | Move::Travel(_) => None,
-        }
-    }
-
     /// The rotation at a time; none of what only travels.
     pub(crate) fn turned(&self, t: f64) -> Quat {
         match self {

@@ -15,7 +15,7 @@ pub(super) struct Way {
     pub(super) path: Path,
     pub(super) start: f64,
     /// Orientation by keys: their times on the common clock, and they themselves.
-    pub(super) keyed: (Vec<f64>, Vec<Quat>),
+    pub(super) keys: (Vec<f64>, Vec<Quat>),
     /// The file gives some of them.
     pub(super) any_given: bool,
     /// Turns the model to fit +Z forward and +Y up.
@@ -64,7 +64,7 @@ impl Way {
         let model = orient::model_frame(shape.model_forward, shape.model_up)?;
         let on_clock = |times: &[f64]| -> Vec<f64> { times.iter().map(|t| start + t).collect() };
         let keys = orient::keyed(&path, &given, shape.level).into_iter().map(|q| q * model);
-        let keyed = apart(on_clock(path.key_times()).into_iter().zip(keys));
+        let keys = apart(on_clock(path.key_times()).into_iter().zip(keys));
         // At a corner the object turns at once; a channel can only turn quickly.
         let ramps = path.corners().iter().map(|t| t - RAMP).filter(|&t| t > 0.0);
         let times = path.key_times().iter().chain(path.jumps()).chain(path.corners()).copied().chain(ramps);
@@ -74,7 +74,7 @@ impl Way {
         let ramp = |&t: &f64| (start + (t - RAMP).max(0.0), start + t);
         let (jumps, ramps) = (merged(jumps), path.corners().iter().map(ramp).collect());
         let any_given = given.iter().any(Option::is_some);
-        Ok(Way { path, start, keyed, any_given, model, knots, jumps, ramps })
+        Ok(Way { path, start, keys, any_given, model, knots, jumps, ramps })
     }
 
     pub(super) fn end(&self) -> f64 {
@@ -96,15 +96,17 @@ impl Way {
         steps.chain([duration]).map(|t| (t / duration, self.path.position(t))).collect()
     }
 
+    /// How the root turns by keys.
+    pub(super) fn keyed(&self, shape: &Shape, scheme: Scheme) -> Motion<'_> {
+        let (times, keys) = &self.keys;
+        Motion::new(times, keys, scheme, key_ends(shape.ends)).with_tcb(shape.tcb)
+    }
+
     /// How the root turns, if it does.
     pub(super) fn attitude<'a>(&'a self, orient: Orient, shape: &Shape, scheme: Scheme) -> Option<Move<'a>> {
         match orient {
             Orient::None => None,
-            Orient::Keyed => {
-                let (times, keys) = &self.keyed;
-                let motion = Motion::new(times, keys, scheme, key_ends(shape.ends));
-                Some(Move::Keys(motion.with_tcb(shape.tcb)))
-            }
+            Orient::Keyed => Some(Move::Keys(self.keyed(shape, scheme))),
             Orient::Tangent => Some(self.facing(Tangent::new(&self.path), shape.level)),
             Orient::Upright => Some(self.facing(Upright::new(&self.path, shape.bank), shape.level)),
         }

@@ -38,13 +38,18 @@ impl Facing {
 
     /// Turned by the shortest arc to another direction; by 180° about up.
     pub(super) fn turned_to(self, forward: DVec3) -> Facing {
-        let sum = self.forward + forward;
-        if sum.length() < REVERSAL {
+        if self.is_against(forward) {
             return Facing::new(forward, self.up);
         }
+        let sum = self.forward + forward;
         // The arc is the half turn about the old forward, then the one about the bisector.
         let half_turn = |v: DVec3, axis: DVec3| axis * (2.0 * axis.dot(v)) - v;
         Facing::new(forward, half_turn(-self.up, sum.normalize()))
+    }
+
+    /// Whether another direction is the opposite one.
+    pub(super) fn is_against(self, forward: DVec3) -> bool {
+        (self.forward + forward).length() < REVERSAL
     }
 
     /// The side to which +X, the object's left, points.

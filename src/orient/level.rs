@@ -2,7 +2,7 @@
 
 use super::facing::{Facing, tilt, turned};
 use super::passage::{Passage, passages};
-use super::{Attitude, Tangent, continued, smoothstep, wrapped};
+use super::{Attitude, Signs, Tangent, smoothstep, wrapped};
 use crate::math::{Quat, Vec3};
 use glam::DVec3;
 
@@ -59,7 +59,7 @@ pub struct Levelled<A> {
     sink: f64,
     /// Pitch and roll at each node, signs continued from where they are whole.
     tilts: Vec<Quat>,
-    signs: Vec<Quat>,
+    signs: Signs,
 }
 
 impl<A: Attitude> Levelled<A> {
@@ -71,10 +71,10 @@ impl<A: Attitude> Levelled<A> {
         let before_last = keys.len().checked_sub(1 + level.end).and_then(|i| keys.get(i));
         let sink = if level.end == 0 { end } else { before_last.copied().unwrap_or(0.0) };
         let vertical = passages(attitude.tangent(), NO_HEADING);
-        let mut levelled = Levelled { attitude, vertical, lift, sink, tilts: Vec::new(), signs: Vec::new() };
+        let mut levelled =
+            Levelled { attitude, vertical, lift, sink, tilts: Vec::new(), signs: Signs::default() };
         levelled.tilts = levelled.tilts();
-        let nodes = 0..levelled.nodes();
-        levelled.signs = continued(nodes.map(|i| levelled.turned(levelled.time(i))));
+        levelled.signs = Signs::continued(levelled.nodes(), |i| levelled.turned(levelled.time(i)));
         levelled
     }
 
@@ -138,7 +138,7 @@ impl<A: Attitude> Levelled<A> {
 
 impl<A: Attitude> Attitude for Levelled<A> {
     fn at(&self, t: f64) -> Quat {
-        self.turned(t).aligned_to(self.signs[self.attitude.tangent().index(t)])
+        self.signs.follow(self.attitude.tangent().index(t), self.turned(t))
     }
 
     fn tangent(&self) -> &Tangent<'_> {

@@ -33,6 +33,7 @@ pub use tangent::Tangent;
 pub use upright::Upright;
 
 use crate::math::Quat;
+use rayon::prelude::*;
 
 /// A rotation at every time of a course.
 pub trait Attitude: Sync {
@@ -79,6 +80,30 @@ fn continued(rotations: impl Iterator<Item = Quat>) -> Vec<Quat> {
     let mut before = None;
     let follow = |q: Quat| *before.insert(before.map_or(q, |b| q.aligned_to(b)));
     rotations.map(follow).collect()
+}
+
+/// Signs of rotations at nodes, each following on from the one before: rotations that have
+/// them, as float32, since long courses have many nodes.
+#[derive(Default)]
+struct Signs(Vec<[f32; 4]>);
+
+impl Signs {
+    fn continued(nodes: usize, rotation: impl Fn(usize) -> Quat + Sync) -> Signs {
+        let mut signs: Vec<[f32; 4]> =
+            (0..nodes).into_par_iter().map(|i| rotation(i).to_xyzw().map(|x| x as f32)).collect();
+        for i in 1..nodes {
+            let dot: f32 = signs[i - 1].iter().zip(signs[i]).map(|(a, b)| a * b).sum();
+            if dot < 0.0 {
+                signs[i] = signs[i].map(|x| -x);
+            }
+        }
+        Signs(signs)
+    }
+
+    /// A rotation soon after a node, with its sign.
+    fn follow(&self, node: usize, q: Quat) -> Quat {
+        q.aligned_to(Quat::from_xyzw(self.0[node].map(f64::from)))
+    }
 }
 
 #[cfg(test)]

@@ -2,8 +2,9 @@
 
 use super::facing::Facing;
 use super::transport::Transport;
-use super::{Attitude, Course, continued, wrapped};
+use super::{Attitude, Course, Signs, wrapped};
 use crate::math::Quat;
+use std::sync::OnceLock;
 
 /// Forward along the course at every time, up carried along without twist.
 ///
@@ -14,7 +15,8 @@ use crate::math::Quat;
 pub struct Tangent<'a> {
     transport: Transport<'a>,
     spread: Option<Spread>,
-    signs: Vec<Quat>,
+    /// Worked out where they are asked for.
+    signs: OnceLock<Signs>,
 }
 
 /// Twist in proportion to arc length.
@@ -30,16 +32,15 @@ impl<'a> Tangent<'a> {
     pub fn new(course: &'a dyn Course) -> Self {
         let transport = Transport::new(course);
         let spread = course.is_closed().then(|| Spread::new(&transport)).flatten();
-        let mut tangent = Tangent { transport, spread, signs: Vec::new() };
-        tangent.signs = continued((0..tangent.nodes()).map(|i| tangent.node(i).1.rotation()));
-        tangent
+        Tangent { transport, spread, signs: OnceLock::new() }
     }
 
     /// The rotation at a time, seconds: of unit length, its sign continuous wherever
     /// the rotation is.
     pub fn at(&self, t: f64) -> Quat {
         let (node, facing) = self.facing(t);
-        facing.rotation().aligned_to(self.signs[node])
+        let rotation = |i| self.node(i).1.rotation();
+        self.signs.get_or_init(|| Signs::continued(self.nodes(), rotation)).follow(node, facing.rotation())
     }
 
     pub(super) fn course(&self) -> &'a dyn Course {

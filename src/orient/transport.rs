@@ -9,15 +9,20 @@
 use super::Course;
 use super::facing::Facing;
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// The twist that the steps of a whole course may add up to: half of the 1e-6 degrees
 /// that are promised, since what judges a step is an estimate.
 const TOLERANCE: f64 = 0.5e-6 * std::f64::consts::PI / 180.0;
 
 /// An error in twist that is always good enough for a step, radians. It takes 80 000
-/// steps of it to miss the promise, thousands of segments that wind; without it the steps
-/// of long courses would shrink until none fit into memory.
+/// steps of it to miss the promise, thousands of segments that wind.
 const LEAST: f64 = 1e-13;
+
+/// The same on a course of more segments than [`MANY`]: its steps would become so short that
+/// they take more memory than all else.
+const LEAST_OF_MANY: f64 = 1e-10;
+const MANY: usize = 2000;
 
 /// Half a step turns by less than this, radians, unless the course turns within an
 /// instant. So short a step cannot mistake a whole turn for none.
@@ -85,21 +90,63 @@ pub(super) struct Transport<'a> {
 }
 
 impl<'a> Transport<'a> {
-    /// Carries the up that is nearest to +Y at the start along the whole course.
+    /// Carries the up that is nearest to +Y at the start along the whole course: along long ones
+    /// in runs side by side, which are then turned to follow each other.
     pub(super) fn new(course: &'a dyn Course) -> Self {
         let breaks = breaks(course);
-        let mut transport = Transport { course, nodes: Vec::new() };
-        let forward = after(course, breaks[0], breaks[breaks.len() - 1]).unwrap_or(DVec3::Z);
-        let place = Place { t: breaks[0], position: course.position(breaks[0]), forward };
-        let facing = Facing::upright(forward);
-        let mut node = Node { t: place.t, position: place.position, facing, short: 0.0 };
-        transport.nodes.push(node);
-        let parts = (FIRST_STEPS / breaks.len()).clamp(2, 16);
-        for pair in breaks.windows(2) {
-            node = transport.turn(node, pair[1]);
-            node = transport.advance(node, pair[1], parts);
+        let plan = Plan::new(breaks.len() - 1);
+        let run = |breaks: &&[f64]| {
+            let mut run = Transport::beginning(course, breaks);
+            run.carry(breaks, plan);
+            run
+        };
+        let cut = runs(course, &breaks);
+        let mut all = run(&cut[0]);
+        // A few at a time, since all of them take as much memory again.
+        for cut in cut[1..].chunks(AT_ONCE) {
+            let runs: Vec<Transport> = cut.par_iter().map(run).collect();
+            for (run, breaks) in runs.into_iter().zip(cut) {
+                all.follow(run, breaks, plan);
+            }
         }
-        transport
+        all
+    }
+
+    /// With up nearest to +Y at the first of some breaks.
+    fn beginning(course: &'a dyn Course, breaks: &[f64]) -> Self {
+        let t = breaks[0];
+        let here =
+            if t > 0.0 { unit(course.direction(t)) } else { after(course, t, breaks[breaks.len() - 1]) };
+        let facing = Facing::upright(here.unwrap_or(DVec3::Z));
+        Transport { course, nodes: vec![Node { t, position: course.position(t), facing, short: 0.0 }] }
+    }
+
+    /// Goes on from the last node, which is at the first of some breaks, to the last.
+    fn carry(&mut self, breaks: &[f64], plan: Plan) {
+        let mut node = self.nodes[self.nodes.len() - 1];
+        for pair in breaks.windows(2) {
+            node = self.turn(node, pair[1]);
+            node = self.advance(node, pair[1], plan);
+        }
+    }
+
+    /// Goes on with the nodes of a run that begins at the last one, and faces the same way there.
+    /// What carries up does not mind how it is rolled, but for the half turns of reversals.
+    fn follow(&mut self, run: Transport, breaks: &[f64], plan: Plan) {
+        let Some(last) = self.nodes.last_mut() else { return };
+        if run.reverses() {
+            return self.carry(breaks, plan);
+        }
+        let first = run.nodes[0];
+        let roll = first.facing.roll_to(last.facing.up);
+        last.short = first.short;
+        let rolled = |node: &Node| Node { facing: node.facing.rolled(roll), ..*node };
+        self.nodes.extend(run.nodes[1..].iter().map(rolled));
+    }
+
+    /// Whether the course turns back on itself somewhere.
+    fn reverses(&self) -> bool {
+        self.nodes.windows(2).any(|pair| pair[0].facing.is_against(pair[1].facing.forward))
     }
 
     /// Facing at a time, and the node it is carried from.
@@ -139,7 +186,7 @@ impl<'a> Transport<'a> {
     }
 
     /// From a break to the next: to the limit from inside where that is a corner.
-    fn advance(&mut self, mut node: Node, end: f64, parts: usize) -> Node {
+    fn advance(&mut self, mut node: Node, end: f64, Plan { parts, least }: Plan) -> Node {
         let start = node.t;
         let share = TOLERANCE * ((end - start) / parts as f64) / self.course.duration();
         for part in 1..=parts {
@@ -148,7 +195,7 @@ impl<'a> Transport<'a> {
             if part == parts && is_corner(self.course, end) {
                 place.forward = before(self.course, start, end).unwrap_or(place.forward);
             }
-            node = self.walk(node, place, Effort { depth: 0, share, twist: f64::INFINITY });
+            node = self.walk(node, place, Effort { depth: 0, least, share, twist: f64::INFINITY });
         }
         node
     }
@@ -177,10 +224,28 @@ impl<'a> Transport<'a> {
     }
 }
 
+/// How a course is cut into steps.
+#[derive(Clone, Copy)]
+struct Plan {
+    /// How many steps of a segment are judged first.
+    parts: usize,
+    /// An error in twist that is good enough for any step, radians.
+    least: f64,
+}
+
+impl Plan {
+    fn new(segments: usize) -> Plan {
+        let least = if segments > MANY { LEAST_OF_MANY } else { LEAST };
+        Plan { parts: (FIRST_STEPS / (segments + 1)).clamp(2, 16), least }
+    }
+}
+
 /// How far a step has been halved, and for what.
 #[derive(Clone, Copy)]
 struct Effort {
     depth: u32,
+    /// What is good enough in any case, radians.
+    least: f64,
     /// The twist it may add, radians.
     share: f64,
     /// What one step and two differed by before it was halved, radians.
@@ -189,7 +254,7 @@ struct Effort {
 
 impl Effort {
     fn halved(self, twist: f64) -> Effort {
-        Effort { depth: self.depth + 1, share: 0.5 * self.share, twist }
+        Effort { depth: self.depth + 1, share: 0.5 * self.share, twist, ..self }
     }
 
     /// Whether a step that turns and twists so much is to be halved.
@@ -198,10 +263,29 @@ impl Effort {
         // about the square of the turn; not to trust that too far, by 100 at most. What
         // does not shrink with the step is rounding.
         let left = twist * (4.0 * turn * turn).clamp(0.01, 1.0);
-        let resolved = left <= self.share.max(LEAST);
+        let resolved = left <= self.share.max(self.least);
         let rounding = twist < 1e-8 && twist > self.twist / 8.0;
         (turn > LARGEST_TURN && self.depth < INSTANT) || (!resolved && !rounding && self.depth < DEEPEST)
     }
+}
+
+/// How many breaks there are to a run, about, and how many runs are carried at a time.
+const RUN: usize = 512;
+const AT_ONCE: usize = 16;
+
+/// Breaks in runs, each of which begins where the one before ends: where the course has a
+/// direction, and but one.
+fn runs<'b>(course: &dyn Course, breaks: &'b [f64]) -> Vec<&'b [f64]> {
+    let (mut runs, mut from) = (Vec::new(), 0);
+    for (i, &t) in breaks.iter().enumerate() {
+        let plain = || unit(course.direction(t)).is_some() && !is_corner(course, t);
+        if i >= from + RUN && i + 1 < breaks.len() && plain() {
+            runs.push(&breaks[from..=i]);
+            from = i;
+        }
+    }
+    runs.push(&breaks[from..]);
+    runs
 }
 
 /// The times between which a course is smooth: its ends, key times and corners.
@@ -242,4 +326,43 @@ fn limit(course: &dyn Course, times: [f64; 3]) -> Option<DVec3> {
     let [at, beside, inside] = times.map(|t| unit(course.direction(t)));
     let inside = inside?;
     [at, beside].into_iter().flatten().find(|d| d.distance(inside) < 1e-6).or(Some(inside))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::path::{Kind, Options, Path};
+
+    /// Through points that wind, with a doubling back every so many, if any.
+    fn winding(back: Option<usize>) -> Path {
+        let wound = |i: usize| DVec3::new(i as f64, (1.7 * i as f64).sin(), (0.9 * i as f64).cos());
+        let straight = |i: usize| DVec3::new(i as f64 + [0.0, 1.5, -1.0][i % 3], 0.0, 0.0);
+        let doubles = |i: usize| back.is_some_and(|every| i % every < 6);
+        let points: Vec<DVec3> =
+            (0..4 * RUN).map(|i| if doubles(i) { straight(i) } else { wound(i) }).collect();
+        Path::new(Kind::CatmullRom, &points, None, &Options::default()).unwrap()
+    }
+
+    #[test]
+    fn runs_follow_each_other_as_one_would() {
+        for back in [None, Some(700)] {
+            let path = winding(back);
+            let breaks = breaks(&path);
+            let cut = runs(&path, &breaks);
+            assert!(cut.len() > 3);
+            assert!(cut.windows(2).all(|pair| pair[0].last() == pair[1].first()));
+            let plan = Plan::new(breaks.len() - 1);
+            let mut alone = Transport::beginning(&path, &breaks);
+            alone.carry(&breaks, plan);
+            assert_eq!(alone.reverses(), back.is_some());
+            let found = Transport::new(&path);
+            for i in 0..20_000 {
+                let t = path.duration() * f64::from(i) / 20_000.0;
+                let (found, alone) = (found.at(t).1, alone.at(t).1);
+                assert_eq!(found.forward, alone.forward);
+                // Rounding may decide whether a step is halved, which then twists by 1e-10 less.
+                assert!((found.up - alone.up).length() < 1e-9, "{t}: {:e}", (found.up - alone.up).length());
+            }
+        }
+    }
 }

@@ -1,9 +1,9 @@
 //! `upright`: forward along the course, head up.
 
 use super::bank::Bank;
-use super::facing::{roll, tilt};
+use super::facing::{Facing, roll, tilt};
 use super::passage::{Passage, passages};
-use super::{Attitude, Course, Tangent, continued, smoothstep, wrapped};
+use super::{Attitude, Course, Signs, Tangent, smoothstep, wrapped};
 use crate::math::Quat;
 
 /// Nearer to the vertical than this, radians, up is no longer told by +Y alone.
@@ -19,7 +19,7 @@ pub struct Upright<'a> {
     /// Each with the roll, relative to the tangent's up, of the up that is carried.
     steep: Vec<(Passage, f64)>,
     bank: Option<Bank>,
-    signs: Vec<Quat>,
+    signs: Signs,
 }
 
 impl<'a> Upright<'a> {
@@ -30,15 +30,20 @@ impl<'a> Upright<'a> {
             passages(&tangent, STEEP).into_iter().map(|p| (carried(&p), p)).map(|(roll, p)| (p, roll));
         let steep = steep.collect();
         let bank = (bank != 0.0 && course.duration() > 0.0).then(|| Bank::new(course, bank));
-        let mut upright = Upright { tangent, steep, bank, signs: Vec::new() };
-        let nodes = 0..upright.tangent.nodes();
-        upright.signs = continued(nodes.map(|i| upright.turned(upright.tangent.node(i).0).1));
+        let mut upright = Upright { tangent, steep, bank, signs: Signs::default() };
+        upright.signs = Signs::continued(upright.tangent.nodes(), |i| upright.at_node(i));
         upright
     }
 
-    /// The rotation at a time, its sign as it comes, and the last node before it.
-    fn turned(&self, t: f64) -> (usize, Quat) {
-        let (node, facing) = self.tangent.facing(t);
+    /// The rotation at a node, its sign as it comes; at a corner what follows it.
+    fn at_node(&self, i: usize) -> Quat {
+        let (t, _) = self.tangent.node(i);
+        let last = (i + 1..self.tangent.nodes()).take_while(|&j| self.tangent.node(j).0 == t).last();
+        self.turned(t, self.tangent.node(last.unwrap_or(i)).1)
+    }
+
+    /// The rotation that faces so at a time.
+    fn turned(&self, t: f64, facing: Facing) -> Quat {
         let upright = facing.roll_to_upright();
         let blended = self.steep_at(t).map_or(upright, |(passage, carried)| {
             // A course that ends steep, or starts so, has no upright to come back to: what
@@ -48,7 +53,7 @@ impl<'a> Upright<'a> {
             carried + blend(upright - carried, weight)
         });
         let lean = self.bank.as_ref().map_or(0.0, |bank| bank.at(t));
-        (node, facing.rotation() * roll(blended + lean))
+        facing.rotation() * roll(blended + lean)
     }
 
     /// The steep passage that holds a time, and the roll that is carried through it.
@@ -60,8 +65,8 @@ impl<'a> Upright<'a> {
 
 impl Attitude for Upright<'_> {
     fn at(&self, t: f64) -> Quat {
-        let (node, rotation) = self.turned(t);
-        rotation.aligned_to(self.signs[node])
+        let (node, facing) = self.tangent.facing(t);
+        self.signs.follow(node, self.turned(t, facing))
     }
 
     fn tangent(&self) -> &Tangent<'_> {

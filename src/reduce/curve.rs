@@ -24,7 +24,7 @@ pub trait Curve: Sync {
     fn cubic(&self, _from: f64, _to: f64) -> Option<[[f64; 3]; 4]> {
         None
     }
-    /// Stretches, increasing, that stand for a jump: their turn is no step.
+    /// Stretches that stand for a jump, starts and ends increasing: their turn is no step.
     fn ramps(&self) -> &[(f64, f64)] {
         &[]
     }
@@ -33,6 +33,13 @@ pub trait Curve: Sync {
     fn first_spin(&self) -> Option<f64> {
         None
     }
+}
+
+/// Whether what follows a key is part of a ramp.
+pub(super) fn on_ramp(curve: &impl Curve, key: f32) -> bool {
+    let ramps = curve.ramps();
+    let next = ramps.partition_point(|&(_, end)| end as f32 <= key);
+    ramps.get(next).is_some_and(|&(start, _)| start as f32 <= key)
 }
 
 /// Velocities that differ by less, relatively, do not jump.
@@ -184,6 +191,8 @@ pub struct Attitude<'a> {
     knots: Vec<f64>,
     corners: Vec<f64>,
     ramps: Vec<(f64, f64)>,
+    /// The values at the start and the end of each of them.
+    jumps: Vec<[Quat; 2]>,
 }
 
 impl<'a> Attitude<'a> {
@@ -200,7 +209,8 @@ impl<'a> Attitude<'a> {
         let ramps: Vec<(f64, f64)> = ramps.iter().map(|&(a, b)| (near(a), near(b))).collect();
         let ends: Vec<f64> = ramps.iter().flat_map(|&(a, b)| [a, b]).collect();
         let corners = inside(&ends, from, to);
-        Attitude { at, knots: framed(knots, &corners, from, to), corners, ramps }
+        let jumps = ramps.iter().map(|&(a, b)| [at(a), at(b)]).collect();
+        Attitude { at, knots: framed(knots, &corners, from, to), corners, ramps, jumps }
     }
 }
 
@@ -208,11 +218,11 @@ impl Curve for Attitude<'_> {
     type Value = Quat;
 
     fn at(&self, t: f64) -> Quat {
-        let ramp = self.ramps.iter().find(|&&(from, to)| from < t && t < to);
-        match ramp {
+        let next = self.ramps.partition_point(|&(_, to)| to <= t);
+        match self.ramps.get(next).filter(|&&(from, _)| from < t) {
             None => (self.at)(t),
             Some(&(from, to)) => {
-                let (a, b) = ((self.at)(from), (self.at)(to));
+                let [a, b] = self.jumps[next];
                 a.moved(a.step_to(b) * ((t - from) / (to - from)))
             }
         }

@@ -26,6 +26,7 @@ pub(crate) use dense::{Asked, Ends, Near, fewer};
 pub use value::{Numbers, OtherBlend, Step, Value};
 
 use crate::math::Quat;
+use curve::on_ramp;
 use proof::Proven;
 use reach::{Key, Limits};
 use search::Stuck;
@@ -221,8 +222,7 @@ fn written<C: Curve<Value: Value<Stored = [f32; N]>>, const N: usize>(
         let value = values.last().map_or(key.stored, |&before| C::Value::continuous(key.stored, before));
         values.push(value);
     }
-    let on_ramp = |time: f32| curve.ramps().iter().any(|&(a, b)| a as f32 <= time && time < b as f32);
-    let steps = keys.windows(2).filter(|pair| !on_ramp(pair[0].time));
+    let steps = keys.windows(2).filter(|pair| !on_ramp(curve, pair[0].time));
     let largest = steps.map(|pair| pair[0].value.distance(pair[1].value)).fold(0.0, f64::max);
     let other = if C::Value::other_blend().is_some() { proven.other } else { proven.deviation };
     let known = curve.rates(f64::from(keys[0].time), curve.knots()[1]).is_some();

@@ -27,7 +27,10 @@ const MIDDLE: f64 = 1.5;
 /// Refuses a curve that turns too fast somewhere for a tolerance. The ramps of jumps may be as
 /// short as they like.
 pub(super) fn check<C: Curve>(curve: &C, tolerance: f64) -> Result<(), Stuck> {
-    let on_ramp = |pair: &[f64]| curve.ramps().iter().any(|&(from, to)| from <= pair[0] && pair[1] <= to);
+    let on_ramp = |pair: &[f64]| {
+        let next = curve.ramps().partition_point(|&(_, to)| to < pair[1]);
+        curve.ramps().get(next).is_some_and(|&(from, _)| from <= pair[0])
+    };
     for pair in curve.knots().windows(2).filter(|pair| !on_ramp(pair)) {
         let (from, to, spacing) = (pair[0], pair[1], spacing(pair[1]));
         let Some(rates) = curve.rates(from, to) else { continue };

@@ -5,7 +5,7 @@
 //! key after. Which way served best is known at the end: every key knows its
 //! predecessor.
 
-use super::curve::Curve;
+use super::curve::{Curve, on_ramp};
 use super::reach::{Ahead, Key, Limits, Remembered};
 use super::value::Value;
 use rayon::prelude::*;
@@ -122,8 +122,11 @@ fn search<C: Curve>(
         }
         let mut looks: Vec<(Node<C::Value>, Ahead<C>)> = Vec::with_capacity(ends.len());
         for end in ends {
-            let way = f64::from(end.key.time) - f64::from(nodes[end.before].key.time);
-            let ahead = look(curve, stops, limits, end.key, way);
+            let before = nodes[end.before].key.time;
+            // How long a jump's ramp lasts says nothing of what follows.
+            let ramp = on_ramp(curve.curve, before);
+            let guess = if ramp { f64::INFINITY } else { f64::from(end.key.time) - f64::from(before) };
+            let ahead = look(curve, stops, limits, end.key, guess);
             looks.push((end, ahead));
         }
         looks.sort_by(|a, b| b.1.reach().total_cmp(&a.1.reach()));
@@ -145,8 +148,8 @@ fn look<'a, C: Curve>(
     guess: f64,
 ) -> Ahead<'a, C> {
     let next = stops.partition_point(|&stop| stop <= key.time).min(stops.len() - 1);
-    let ramps = curve.curve.ramps().iter().any(|&(from, to)| from as f32 <= key.time && key.time < to as f32);
-    let limits = if ramps { Limits { step: f64::INFINITY, ..limits } } else { limits };
+    let limits =
+        if on_ramp(curve.curve, key.time) { Limits { step: f64::INFINITY, ..limits } } else { limits };
     Ahead::new(curve, limits, key, (stops[next], next + 1 == stops.len()), guess)
 }
 

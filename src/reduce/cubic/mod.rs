@@ -14,6 +14,7 @@ mod tests;
 pub use hermite::Flat;
 pub(crate) use hermite::Hermite;
 
+use super::curve::on_ramp;
 use super::search::Stuck;
 use super::value::{Numbers, Value};
 use super::{
@@ -71,7 +72,8 @@ fn reduce<C: Curve<Value: Flat<N>>, const N: usize>(
     pace::check(curve, tolerance).map_err(stuck)?;
     let pieces = search::fewest(curve, &stops, limits).map_err(stuck)?;
     let proven = proof::prove(curve, pieces, limits, negligible).map_err(stuck)?;
-    let longest = proven.pieces.iter().filter(|piece| !on_ramp(curve, piece)).map(way::<C::Value, N>);
+    let longest =
+        proven.pieces.iter().filter(|piece| !on_ramp(curve, piece.from.time)).map(way::<C::Value, N>);
     let facts = facts(curve, (proven.deviation, proven.moved, longest.fold(0.0, f64::max)), unit);
     let (times, values) = written(&proven.pieces);
     Ok(CubicKeys { times, values, facts })
@@ -96,11 +98,6 @@ fn exact_stops(curve: &impl Curve) -> Vec<f32> {
     stops.sort_by(f32::total_cmp);
     stops.dedup();
     stops
-}
-
-fn on_ramp<const N: usize>(curve: &impl Curve, piece: &Piece<N>) -> bool {
-    let time = piece.from.time;
-    curve.ramps().iter().any(|&(a, b)| a as f32 <= time && time < b as f32)
 }
 
 /// The way from key to key.

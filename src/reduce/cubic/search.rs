@@ -4,7 +4,7 @@
 //! intervals are too: the furthest reach from key to key is the fewest there can be.
 
 use super::hermite::{Flat, Hermite};
-use crate::reduce::curve::Curve;
+use crate::reduce::curve::{Curve, on_ramp};
 use crate::reduce::search::Stuck;
 use crate::reduce::value::{Numbers, Value};
 
@@ -199,8 +199,8 @@ pub(super) fn fewest<C: Curve<Value: Flat<N>>, const N: usize>(
     let mut from = key(curve, stops[0]);
     let mut guess = f64::INFINITY;
     for &stop in &stops[1..] {
-        let ramp = curve.ramps().iter().any(|&(a, b)| a as f32 <= from.time && from.time < b as f32);
-        let limits = if ramp { Limits { step: f64::INFINITY, ..limits } } else { limits };
+        let limits =
+            if on_ramp(curve, from.time) { Limits { step: f64::INFINITY, ..limits } } else { limits };
         while from.time < stop {
             let piece = furthest(curve, limits, from, stop, guess)?;
             guess = f64::from(piece.to.time) - f64::from(from.time);
