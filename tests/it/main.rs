@@ -41,6 +41,8 @@ mod hostile;
 mod inspect;
 #[cfg(feature = "cli")]
 mod interpolation;
+#[cfg(all(feature = "cli", feature = "plot", target_os = "linux"))]
+mod long_inputs;
 #[cfg(all(feature = "cli", feature = "render"))]
 mod moving;
 #[cfg(feature = "cli")]

@@ -1,0 +1,97 @@
+//! Inputs of more than half a megabyte take no more time and memory than their size and that of
+//! what comes out allow.
+
+use crate::support::confined::{Limits, confined};
+use dat2glb::curve::Scheme;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+/// Numbers between −1 and 1 that look like chance, the same every time.
+fn chance() -> impl FnMut() -> f64 {
+    let mut state = 1u64;
+    move || {
+        // Knuth's MMIX generator; the high bits are the good ones.
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 32) as f64 / 2f64.powi(31) - 1.0
+    }
+}
+
+/// 9,000 keys that turn by up to 40° about any axis, at uneven times.
+fn keys() -> String {
+    let (mut next, mut q, mut t) = (chance(), glam::DQuat::IDENTITY, 0.0);
+    let mut text = "# 1 2\n".to_owned();
+    for _ in 0..9_000 {
+        let turn = glam::DVec3::new(next(), next(), next()) * 0.4;
+        q = (q * glam::DQuat::from_scaled_axis(turn)).normalize();
+        t += 0.1 + 0.05 * next();
+        writeln!(text, "{t:.6} {:.12} {:.12} {:.12} {:.12}", q.w, q.x, q.y, q.z).unwrap();
+    }
+    text
+}
+
+/// 16,000 points that wind, 1,000 seconds.
+fn points(kind: &str) -> String {
+    let (mut next, mut at) = (chance(), glam::DVec3::ZERO);
+    let mut text = format!("# {kind} 1000\n");
+    for _ in 0..16_000 {
+        at += glam::DVec3::new(2.0 * next() + 1.0, next(), 2.0 * next());
+        writeln!(text, "{:.6} {:.6} {:.6}", at.x, at.y, at.z).unwrap();
+    }
+    text
+}
+
+/// Runs a command on files of a folder; it writes no more than so many bytes.
+#[track_caller]
+fn is_soon_done(folder: &Path, command: &str, most: u64) {
+    let words: Vec<String> =
+        command.replace("FOLDER", folder.to_str().unwrap()).split(' ').map(str::to_owned).collect();
+    let read: u64 = words.iter().filter_map(|word| fs::metadata(word).ok()).map(|file| file.len()).sum();
+    let limits = Limits::of(read + most);
+    // What computes much is slower in a build for development than what reads.
+    let slower = if cfg!(debug_assertions) { 2 } else { 1 };
+    let limits = Limits { seconds: slower * limits.seconds, ..limits };
+    let ran = confined(&words, limits).unwrap_or_else(|how| panic!("{command}: {how}"));
+    assert_eq!(ran.code, 0, "{command}: {}", ran.stderr);
+    let output = words.iter().position(|word| word == "-o").map(|at| &words[at + 1]);
+    let written = output.map_or(0, |output| fs::metadata(output).unwrap().len()) + ran.stdout.len() as u64;
+    assert!(written <= most, "{command} wrote {written} bytes");
+    if let Some(output) = output.filter(|output| !output.ends_with("kept.glb")) {
+        fs::remove_file(output).unwrap();
+    }
+}
+
+#[test]
+fn keys_by_every_scheme() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("keys.dat"), keys()).unwrap();
+    for scheme in Scheme::ALL {
+        let command = format!("convert FOLDER/keys.dat --scheme {} -o FOLDER/out.glb", scheme.name());
+        is_soon_done(folder, &command, 1_500_000);
+    }
+    is_soon_done(folder, "convert FOLDER/keys.dat --tolerance 0.1 -o FOLDER/out.glb", 1_500_000);
+    is_soon_done(folder, "convert FOLDER/keys.dat --quantize -o FOLDER/kept.glb", 1_500_000);
+    is_soon_done(folder, "check FOLDER/kept.glb --against FOLDER/keys.dat", 1_000);
+    is_soon_done(folder, "reduce FOLDER/kept.glb --tolerance 1 -o FOLDER/out.glb", 1_500_000);
+    is_soon_done(folder, "compare FOLDER/keys.dat", 5_000);
+    is_soon_done(folder, "plot FOLDER/keys.dat --scheme all -o FOLDER/out.svg", 1_000_000);
+    is_soon_done(folder, "sample FOLDER/keys.dat -o FOLDER/out.csv", 3_000_000);
+}
+
+#[test]
+fn paths_that_wind_and_paths_of_corners() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for kind in ["catmull-rom", "polyline"] {
+        fs::write(folder.join("path.dat"), points(kind)).unwrap();
+        is_soon_done(folder, "convert FOLDER/path.dat -o FOLDER/kept.glb", 3_000_000);
+        is_soon_done(folder, "check FOLDER/kept.glb --against FOLDER/path.dat", 2_000);
+        is_soon_done(folder, "convert FOLDER/path.dat --orient tangent -o FOLDER/out.glb", 3_000_000);
+        is_soon_done(folder, "convert FOLDER/path.dat --orient keyed -o FOLDER/out.glb", 3_000_000);
+        is_soon_done(folder, "plot FOLDER/path.dat -o FOLDER/out.svg", 1_000_000);
+        is_soon_done(folder, "sample FOLDER/path.dat -o FOLDER/out.csv", 4_000_000);
+    }
+    // Every corner is a jump of the rotation, and a key of its own before and after it.
+    is_soon_done(folder, "convert FOLDER/path.dat --tolerance 0.01 -o FOLDER/out.glb", 1_500_000);
+}
