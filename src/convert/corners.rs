@@ -50,16 +50,19 @@ pub(super) fn displacement(ground: &Ground, plan: &ClipPlan, writing: Writing) -
     Some(largest_displacement(&Chain { root, limbs, root_turns, length }))
 }
 
+fn are_few(times: usize, moves: usize) -> bool {
+    times <= MOST_SAMPLES && times * moves <= MOST_ROTATIONS
+}
+
 /// The times that so many moves share; none if there is too much to look at.
 fn grid(when: &When, moves: usize) -> Option<Vec<f32>> {
     match when {
-        When::Grid { object, .. } => {
-            let few = object.len() <= MOST_SAMPLES && object.len() * moves <= MOST_ROTATIONS;
-            few.then(|| (0..object.chunks()).flat_map(|chunk| object.chunk(chunk).1).collect())
-        }
+        When::Grid { object, .. } => are_few(object.len(), moves)
+            .then(|| (0..object.chunks()).flat_map(|chunk| object.chunk(chunk).1).collect()),
         When::Chosen { object, .. } => {
             let all: usize = object.iter().map(|chosen| chosen.times.len()).sum();
-            (all <= MOST_SAMPLES).then(Vec::new)
+            // Each has times of its own, at which all others are looked at too.
+            are_few(all, moves).then(Vec::new)
         }
     }
 }

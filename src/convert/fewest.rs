@@ -81,13 +81,19 @@ pub(super) fn cameras(
     all(moves, ground.duration(), fewest, encoding)
 }
 
+/// How many keys of a file are chosen with care.
+const CAREFUL: usize = 2 * reduce::Options::CAREFUL;
+
 fn all(
     moves: Vec<(&Move, f64)>,
     end: f64,
     fewest: &Fewest,
     encoding: Encoding,
 ) -> Result<Vec<Chosen>, Unkept> {
-    moves.into_par_iter().map(|(a_move, allowed)| chosen(a_move, end, allowed, fewest, encoding)).collect()
+    // All share in the care, so that a file does not take the longer the more moves it has.
+    let careful = (CAREFUL / moves.len().max(1)).min(reduce::Options::CAREFUL);
+    let chosen = |(a_move, allowed)| chosen(a_move, end, allowed, careful, fewest, encoding);
+    moves.into_par_iter().map(chosen).collect()
 }
 
 /// What is known of moves that have keys of their own.
@@ -132,11 +138,12 @@ fn allowed(ground: &Ground, mover: Mover, a_move: &Move, sharing: usize, fewest:
 }
 
 /// The fewest keys of a move from 0 to `end`. `allowed`: how far it may be off, degrees or
-/// units.
+/// units; `careful`: how many are chosen with care.
 fn chosen(
     a_move: &Move,
     end: f64,
     allowed: f64,
+    careful: usize,
     fewest: &Fewest,
     encoding: Encoding,
 ) -> Result<Chosen, Unkept> {
@@ -147,6 +154,7 @@ fn chosen(
         reserve: if matches!(a_move, Move::Travel(_)) { 0.0 } else { reserve },
         max_step: (!matches!(a_move, Move::Travel(_))).then_some(fewest.max_step),
         on_curve: fewest.on_curve,
+        careful,
     };
     let coding = coded.then_some((encoding, reserve));
     let cubic = fewest.cubic;

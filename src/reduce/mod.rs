@@ -42,15 +42,21 @@ pub struct Options {
     pub max_step: Option<f64>,
     /// Keys stay on the curve.
     pub on_curve: bool,
+    /// How many keys are chosen with care: that takes four times as long, and saves one key in
+    /// two hundred where the curve bends smoothly.
+    pub careful: usize,
 }
 
 impl Options {
+    /// The number of keys that are chosen with care, where not much else is to be found.
+    pub const CAREFUL: usize = 2048;
+
     /// The smallest tolerance for rotations, degrees: float32 alone costs up to 6e-6°.
     pub const LEAST_DEGREES: f64 = 2e-5;
 
     /// A tolerance and nothing else.
     pub fn new(tolerance: f64) -> Options {
-        Options { tolerance, reserve: 0.0, max_step: None, on_curve: false }
+        Options { tolerance, reserve: 0.0, max_step: None, on_curve: false, careful: Self::CAREFUL }
     }
 }
 
@@ -168,14 +174,14 @@ fn reduce<C: Curve<Value: Value<Stored = [f32; N]>>, const N: usize>(
     steady(curve)?;
     pace::check(curve, tolerance).map_err(stuck)?;
     let found = |limits: Limits| {
-        let keys = search::fewest(curve, &stops, limits)?;
+        let keys = search::fewest(curve, &stops, limits, options.careful)?;
         proof::prove(curve, &keys, tolerance, NEGLIGIBLE * tolerance)
     };
     let keys = written(curve, &found(limits).map_err(stuck)?, unit);
     // Off the curve the search is not exact: few keys, and those that a step limits, may
     // be fewer on it.
     let stepped = keys.facts.largest_step * unit > 0.95 * step;
-    let doubtful = keys.times.len() < if stepped { search::CAREFUL } else { FEW };
+    let doubtful = keys.times.len() < if stepped { options.careful } else { options.careful.min(FEW) };
     if limits.on_curve || !doubtful {
         return Ok(keys);
     }

@@ -165,7 +165,7 @@ mod tests {
         let last = times[2] as f32;
         assert_eq!(f64::from(last), year);
         assert!((beyond(&curve, last, keys[1]) - 0.4).abs() < 1e-12);
-        let degree = Options { tolerance: 1.0, reserve: 0.0, max_step: None, on_curve: false };
+        let degree = Options::new(1.0);
         assert!(matches!(reduce::rotation(&curve, &degree), Err(Error::Times { time, .. }) if time == year));
         assert!(matches!(reduce::cubic_rotation(&curve, &degree), Err(Error::Times { .. })));
         assert!(beyond(&curve, 1e9, keys[2]) < 1e-15);

@@ -14,11 +14,6 @@ use rayon::prelude::*;
 const BEAM: usize = 3;
 /// Ends that are looked ahead of in each round.
 const LOOKS: usize = 8;
-/// So many rounds; after them only the furthest ends are looked at, of which there are several
-/// at a stop, and parts of what is left are searched side by side, for a few keys more and a
-/// fraction of the time.
-pub(super) const CAREFUL: usize = 2048;
-
 /// A key and the number of the key before it.
 struct Node<V: Value> {
     key: Key<V>,
@@ -31,13 +26,18 @@ pub(super) struct Stuck(pub(super) f64);
 
 /// Keys from the first time to the last, at all `stops` (increasing; the first and the
 /// last among them).
+///
+/// After so many `careful` rounds only the furthest ends are looked at, of which there are
+/// several at a stop, and parts of what is left are searched side by side, for a few keys more
+/// and a fraction of the time.
 pub(super) fn fewest<C: Curve>(
     curve: &C,
     stops: &[f32],
     limits: Limits,
+    careful: usize,
 ) -> Result<Vec<Key<C::Value>>, Stuck> {
     let exact = |time: f32| Key::new(time, curve.at(f64::from(time)));
-    let careful = search(curve, stops, limits, exact(stops[0]), CAREFUL)?;
+    let careful = search(curve, stops, limits, exact(stops[0]), careful)?;
     let Found::Some(mut keys) = careful else { return Ok(careful.keys()) };
     let start = keys.pop().unwrap_or(exact(stops[0]));
     let swift = Limits { several: false, ..limits };
@@ -54,15 +54,18 @@ pub(super) fn fewest<C: Curve>(
     Ok(keys)
 }
 
-/// How many parts are searched side by side, however many threads there are; each costs a key at most.
+/// How many parts are searched side by side at most, however many threads there are, and how many
+/// knots each has at least, since it may cost a key.
 const PARTS: usize = 32;
+const KNOTS: usize = 64;
 
 /// The stops of the parts of what is left from a time on, cut at knots, an equal number to each.
 fn parts(knots: &[f64], stops: &[f32], from: f32) -> Vec<Vec<f32>> {
     let last = stops[stops.len() - 1];
     let inner = |t: &f32| from < *t && *t < last;
     let knots: Vec<f32> = knots.iter().map(|&knot| knot as f32).filter(inner).collect();
-    let mut cuts: Vec<f32> = (1..PARTS).filter_map(|i| knots.get(i * knots.len() / PARTS).copied()).collect();
+    let parts = (knots.len() / KNOTS).clamp(1, PARTS);
+    let mut cuts: Vec<f32> = (1..parts).map(|i| knots[i * knots.len() / parts]).collect();
     cuts.push(last);
     cuts.dedup();
     let mut before = from;
@@ -204,12 +207,12 @@ mod tests {
 
     #[test]
     fn parts_follow_each_other_and_hold_every_stop() {
-        let knots: Vec<f64> = (0..1000).map(|i| 0.5 * f64::from(i)).collect();
+        let knots: Vec<f64> = (0..3000).map(|i| 0.5 * f64::from(i)).collect();
         for (stops, from) in
-            [(vec![0.0, 499.5], 0.3), (vec![0.0, 7.0, 7.5, 100.0, 499.5], 7.0), (vec![0.0, 499.5], 499.2)]
+            [(vec![0.0, 1499.5], 0.3), (vec![0.0, 7.0, 7.5, 100.0, 1499.5], 7.0), (vec![0.0, 1499.5], 1499.2)]
         {
             let parts = parts(&knots, &stops, from);
-            assert!(parts.len() == PARTS || from > 400.0);
+            assert!(parts.len() == PARTS || from > 1400.0);
             assert_eq!((parts[0][0], parts[parts.len() - 1].last()), (from, stops.last()));
             assert!(parts.windows(2).all(|pair| pair[0].last() == pair[1].first()));
             assert!(parts.iter().all(|part| part.windows(2).all(|pair| pair[0] < pair[1])));
@@ -233,10 +236,10 @@ mod tests {
         let stops = [0.0, times[799] as f32];
         let tolerance = 0.05f64.to_radians() / 2.0;
         let limits = Limits { tolerance, step: 0.15, step_slack: 0.0, on_curve: false, several: true };
-        let keys = fewest(&curve, &stops, limits).unwrap();
+        let keys = fewest(&curve, &stops, limits, 300).unwrap();
         let swift = Limits { several: false, ..limits };
         let one = search(&curve, &stops, swift, keys[0], usize::MAX).unwrap().keys();
-        assert!(keys.len() > 2 * CAREFUL && keys.len() <= one.len() + PARTS, "{} {}", keys.len(), one.len());
+        assert!(keys.len() > 600 && keys.len() <= one.len() + 800 / KNOTS, "{} {}", keys.len(), one.len());
         assert!(keys.windows(2).all(|pair| pair[0].time < pair[1].time));
         assert_eq!(keys[keys.len() - 1].time, stops[1]);
     }

@@ -331,7 +331,7 @@ fn circle_needs_what_its_sagitta_asks() {
 #[test]
 fn many_keys_cost_few_more() {
     let curve = Travelling::new(&Circle, (0.0, 6000.0), &[]);
-    let count = 5 * search::CAREFUL;
+    let count = 5 * Options::CAREFUL;
     let outside = 6000.0 / count as f64;
     let ratio = (0.5 * outside).cos();
     let keys = numbers(&curve, &Options::new((1.0 - ratio) / (1.0 + ratio))).unwrap();

@@ -124,6 +124,7 @@ fn new_keys(track: &Track, allowed: &Allowed) -> Option<Found> {
         reserve: 0.0,
         max_step: allowed.max_step,
         on_curve: allowed.on_curve,
+        careful: reduce::Options::CAREFUL,
     };
     match (track.property, track.is_cubic()) {
         (Property::Rotation, true) => found(reduce::rotation(&Normalised(Cubics::new(track)), &options)),

@@ -17,15 +17,20 @@ fn chance() -> impl FnMut() -> f64 {
     }
 }
 
-/// 9,000 keys that turn by up to 40° about any axis, at uneven times.
-fn keys() -> String {
-    let (mut next, mut q, mut t) = (chance(), glam::DQuat::IDENTITY, 0.0);
-    let mut text = "# 1 2\n".to_owned();
-    for _ in 0..9_000 {
-        let turn = glam::DVec3::new(next(), next(), next()) * 0.4;
-        q = (q * glam::DQuat::from_scaled_axis(turn)).normalize();
+/// Keys of so many boxes that turn by up to 40° about any axis, at uneven times.
+fn keys(boxes: usize, count: usize) -> String {
+    let (mut next, mut t) = (chance(), 0.0);
+    let mut chain = vec![glam::DQuat::IDENTITY; boxes];
+    let mut text = format!("# {boxes} 2\n");
+    for _ in 0..count {
         t += 0.1 + 0.05 * next();
-        writeln!(text, "{t:.6} {:.12} {:.12} {:.12} {:.12}", q.w, q.x, q.y, q.z).unwrap();
+        write!(text, "{t:.6}").unwrap();
+        for q in &mut chain {
+            let turn = glam::DVec3::new(next(), next(), next()) * 0.4;
+            *q = (*q * glam::DQuat::from_scaled_axis(turn)).normalize();
+            write!(text, " {:.10} {:.10} {:.10} {:.10}", q.w, q.x, q.y, q.z).unwrap();
+        }
+        text.push('\n');
     }
     text
 }
@@ -65,7 +70,7 @@ fn is_soon_done(folder: &Path, command: &str, most: u64) {
 fn keys_by_every_scheme() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    fs::write(folder.join("keys.dat"), keys()).unwrap();
+    fs::write(folder.join("keys.dat"), keys(1, 9_000)).unwrap();
     for scheme in Scheme::ALL {
         let command = format!("convert FOLDER/keys.dat --scheme {} -o FOLDER/out.glb", scheme.name());
         is_soon_done(folder, &command, 1_500_000);
@@ -77,6 +82,18 @@ fn keys_by_every_scheme() {
     is_soon_done(folder, "compare FOLDER/keys.dat", 5_000);
     is_soon_done(folder, "plot FOLDER/keys.dat --scheme all -o FOLDER/out.svg", 1_000_000);
     is_soon_done(folder, "sample FOLDER/keys.dat -o FOLDER/out.csv", 3_000_000);
+}
+
+#[test]
+fn keys_of_many_boxes() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("keys.dat"), keys(500, 20)).unwrap();
+    is_soon_done(folder, "convert FOLDER/keys.dat -o FOLDER/kept.glb", 2_000_000);
+    is_soon_done(folder, "check FOLDER/kept.glb --against FOLDER/keys.dat", 100_000);
+    is_soon_done(folder, "convert FOLDER/keys.dat --tolerance 0.1 -o FOLDER/out.glb", 2_000_000);
+    is_soon_done(folder, "convert FOLDER/keys.dat --interpolation cubicspline -o FOLDER/out.glb", 2_000_000);
+    is_soon_done(folder, "sample FOLDER/keys.dat -o FOLDER/out.csv", 4_000_000);
 }
 
 #[test]
