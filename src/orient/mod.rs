@@ -82,8 +82,8 @@ fn continued(rotations: impl Iterator<Item = Quat>) -> Vec<Quat> {
     rotations.map(follow).collect()
 }
 
-/// Signs of rotations at nodes, each following on from the one before: rotations that have
-/// them, as float32, since long courses have many nodes.
+/// Rotations at nodes, each with the sign that follows on from the one before; as float32,
+/// since long courses have many nodes and only the sign is asked for.
 #[derive(Default)]
 struct Signs(Vec<[f32; 4]>);
 

@@ -10,8 +10,9 @@ use std::sync::OnceLock;
 ///
 /// It starts with the up nearest to +Y (straight up or down: with what pitching from
 /// +Z makes of it), turns at corners by the shortest arc, and is exact to 1e-6 degrees
-/// at any time, whatever other times it is asked at. On a closed course the twist that
-/// is left over at the end is spread in proportion to arc length.
+/// at any time, whatever other times it is asked at; where more than 2000 segments wind,
+/// less so (docs/math/orientation.md). On a closed course the twist that is left over at the
+/// end is spread in proportion to arc length.
 pub struct Tangent<'a> {
     transport: Transport<'a>,
     spread: Option<Spread>,
