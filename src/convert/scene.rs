@@ -19,7 +19,7 @@ pub(super) fn scene(ground: &Ground, path_colour: Option<Colour>) -> Scene {
     for Stand { name, place, turned, mounted } in ground.stands(size) {
         scene.add_camera(name, lens, place, turned, mounted);
     }
-    let line = ground.trace();
+    let line = path_colour.map_or(Vec::new(), |_| ground.trace());
     if let Some(colour) = path_colour.filter(|_| !line.is_empty()) {
         scene.add_trace(&Trace { line, controls: ground.control_points().to_vec() }, colour);
     }

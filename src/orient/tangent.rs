@@ -4,14 +4,15 @@ use super::facing::Facing;
 use super::transport::Transport;
 use super::{Attitude, Course, Signs, wrapped};
 use crate::math::Quat;
+use glam::DVec3;
 use std::sync::OnceLock;
 
 /// Forward along the course at every time, up carried along without twist.
 ///
 /// It starts with the up nearest to +Y (straight up or down: with what pitching from
 /// +Z makes of it), turns at corners by the shortest arc, and is exact to 1e-6 degrees
-/// at any time, whatever other times it is asked at; where more than 2000 segments wind,
-/// less so (docs/math/orientation.md). On a closed course the twist that is left over at the
+/// at any time, whatever other times it is asked at; where thousands of segments wind, by
+/// measure and not by proof (docs/math/orientation.md). On a closed course the twist that is left over at the
 /// end is spread in proportion to arc length.
 pub struct Tangent<'a> {
     transport: Transport<'a>,
@@ -63,6 +64,11 @@ impl<'a> Tangent<'a> {
     /// The last node at or before a time.
     pub(super) fn index(&self, t: f64) -> usize {
         self.transport.index(t)
+    }
+
+    /// Forward at a time, and the last node before it.
+    pub(super) fn forward(&self, t: f64) -> (usize, DVec3) {
+        self.transport.forward(t)
     }
 
     /// The facing at a time, and the last node before it.

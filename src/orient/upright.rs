@@ -5,6 +5,7 @@ use super::facing::{Facing, roll, tilt};
 use super::passage::{Passage, passages};
 use super::{Attitude, Course, Signs, Tangent, smoothstep, wrapped};
 use crate::math::Quat;
+use glam::DVec3;
 
 /// Nearer to the vertical than this, radians, up is no longer told by +Y alone.
 pub(super) const STEEP: f64 = 15.0 * std::f64::consts::PI / 180.0;
@@ -39,20 +40,22 @@ impl<'a> Upright<'a> {
     fn at_node(&self, i: usize) -> Quat {
         let (t, _) = self.tangent.node(i);
         let last = (i + 1..self.tangent.nodes()).take_while(|&j| self.tangent.node(j).0 == t).last();
-        self.turned(t, self.tangent.node(last.unwrap_or(i)).1)
+        let facing = self.tangent.node(last.unwrap_or(i)).1;
+        self.turned(t, facing.forward, || facing)
     }
 
-    /// The rotation that faces so at a time.
-    fn turned(&self, t: f64, facing: Facing) -> Quat {
-        let upright = facing.roll_to_upright();
-        let blended = self.steep_at(t).map_or(upright, |(passage, carried)| {
-            // A course that ends steep, or starts so, has no upright to come back to: what
-            // is carried to its end cannot be opposed on the way.
-            let passes = passage.before.is_some() && passage.after.is_some();
-            let weight = if passes { smoothstep(tilt(facing.forward) / STEEP) } else { 0.0 };
-            carried + blend(upright - carried, weight)
-        });
+    /// The rotation along a forward at a time, and what is carried there without twist.
+    fn turned(&self, t: f64, forward: DVec3, carried: impl Fn() -> Facing) -> Quat {
         let lean = self.bank.as_ref().map_or(0.0, |bank| bank.at(t));
+        let Some((passage, kept)) = self.steep_at(t) else {
+            return Facing::upright(forward).rotation() * roll(lean);
+        };
+        let facing = carried();
+        // A course that ends steep, or starts so, has no upright to come back to: what
+        // is carried to its end cannot be opposed on the way.
+        let passes = passage.before.is_some() && passage.after.is_some();
+        let weight = if passes { smoothstep(tilt(forward) / STEEP) } else { 0.0 };
+        let blended = kept + blend(facing.roll_to_upright() - kept, weight);
         facing.rotation() * roll(blended + lean)
     }
 
@@ -65,8 +68,8 @@ impl<'a> Upright<'a> {
 
 impl Attitude for Upright<'_> {
     fn at(&self, t: f64) -> Quat {
-        let (node, facing) = self.tangent.facing(t);
-        self.signs.follow(node, self.turned(t, facing))
+        let (node, forward) = self.tangent.forward(t);
+        self.signs.follow(node, self.turned(t, forward, || self.tangent.facing(t).1))
     }
 
     fn tangent(&self) -> &Tangent<'_> {

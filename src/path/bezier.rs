@@ -2,9 +2,6 @@
 
 use glam::DVec3;
 
-/// How many control points are computed with on the stack.
-const SMALL: usize = 8;
-
 /// A Bézier curve over u in 0..=1.
 #[derive(Clone, Debug)]
 pub(super) struct Bezier {
@@ -106,14 +103,16 @@ fn differences(points: &[DVec3]) -> Vec<DVec3> {
 /// Value and derivative by repeated interpolation, which is stable for every degree.
 /// Source: de Casteljau; Farin, Curves and Surfaces for CAGD, chapters 4 and 5.
 fn de_casteljau(points: &[DVec3], u: f64) -> [DVec3; 2] {
-    if points.len() <= SMALL {
-        let mut small = [DVec3::ZERO; SMALL];
-        small[..points.len()].copy_from_slice(points);
-        return reduce(&mut small[..points.len()], u);
+    match *points {
+        // Cubics and their derivatives, of which there may be thousands.
+        [a, b, c] => reduce(&mut [a, b, c], u),
+        [a, b, c, d] => reduce(&mut [a, b, c, d], u),
+        _ => reduce(&mut points.to_vec(), u),
     }
-    reduce(&mut points.to_vec(), u)
 }
 
+/// Inlined, where the number of points is known.
+#[inline(always)]
 fn reduce(points: &mut [DVec3], u: f64) -> [DVec3; 2] {
     let degree = points.len() - 1;
     for left in (2..=degree).rev() {

@@ -39,13 +39,6 @@ pub struct Path {
     jumps: Vec<f64>,
 }
 
-/// Position and its derivatives by time, in the path's unit.
-struct State {
-    position: DVec3,
-    velocity: DVec3,
-    acceleration: DVec3,
-}
-
 impl Path {
     /// The path of a kind through or along `points`.
     ///
@@ -64,14 +57,15 @@ impl Path {
         }
         let plan = knots::plan(kind, times.is_some(), options)?;
         let scaled: Vec<DVec3> = points.iter().map(|p| *p / unit).collect();
-        let segments = segments::segments(kind, &scaled, times, plan.spacing, options.ends)?;
-        let parts = pieces::parts(&segments);
-        let length = parts.last().map_or(0.0, Part::behind);
+        let Segments { keys, steps, curves } =
+            segments::segments(kind, &scaled, times, plan.spacing, options.ends)?;
+        let parts = pieces::parts(curves, plan.constant_speed);
+        let length = parts.last().map_or(0.0, |part| part.behind);
         let keyed_times = times.filter(|_| plan.spacing == Spacing::Times && !plan.constant_speed);
-        let seconds = duration(options, times, keyed_times.is_some(), length * unit, segments.steps.len())?;
+        let seconds = duration(options, times, keyed_times.is_some(), length * unit, steps.len())?;
         let mut path = Path {
             control_points: points.to_vec(),
-            key_points: segments.keys.iter().map(|p| *p * unit).collect(),
+            key_points: keys.iter().map(|p| *p * unit).collect(),
             key_times: Vec::new(),
             duration: seconds,
             closed: options.ends == PathEnds::Closed,
@@ -83,27 +77,27 @@ impl Path {
             corners: Vec::new(),
             jumps: Vec::new(),
         };
-        path.run(parts, &segments, keyed_times);
+        path.run(parts, &steps, keyed_times);
         Ok(path)
     }
 
     /// Gives the parts their times, and finds what jumps.
-    fn run(&mut self, parts: Vec<Part>, segments: &Segments, times: Option<&[f64]>) {
+    fn run(&mut self, parts: Vec<Part>, steps: &[f64], times: Option<&[f64]>) {
         if let Some(ease) = self.steady {
             let (length, duration) = (self.length, self.duration);
             let time_at = |s: f64| duration * ease.inverse((s / length).min(1.0));
-            self.key_times = pieces::steady_key_times(&parts, segments.keys.len(), time_at);
+            self.key_times = pieces::steady_key_times(&parts, self.key_points.len(), time_at);
             self.pieces = pieces::steady(parts, time_at);
         } else {
-            self.key_times = pieces::key_times(&segments.steps, times, self.duration);
-            self.pieces = pieces::keyed(parts, &self.key_times, &segments.steps, self.duration);
+            self.key_times = pieces::key_times(steps, times, self.duration);
+            self.pieces = pieces::keyed(parts, &self.key_times, steps, self.duration);
         }
         self.corners = self.meetings(|before, after| {
             let (a, b) = (before.last_direction().or(before.held), after.first_direction());
             matches!((a, b), (Some(a), Some(b)) if a.distance(b) > JUMP)
         });
         self.jumps = self.meetings(|before, after| {
-            let (a, b) = (self.state(before, f64::INFINITY).velocity, self.state(after, 0.0).velocity);
+            let ([a, _], [b, _]) = (self.derivatives(before, f64::INFINITY), self.derivatives(after, 0.0));
             a.distance(b) > JUMP * a.length().max(b.length())
         });
     }
@@ -150,28 +144,29 @@ impl Path {
 
     /// Position at t.
     pub fn position(&self, t: f64) -> DVec3 {
-        self.state(self.piece_at(t), t).position * self.unit
+        let piece = self.piece_at(t);
+        piece.curve.at(self.parameter(piece, t)) * self.unit
     }
 
     /// Velocity at t, units a second.
     pub fn velocity(&self, t: f64) -> DVec3 {
-        self.state(self.piece_at(t), t).velocity * self.unit
+        self.derivatives(self.piece_at(t), t)[0] * self.unit
     }
 
     /// Velocity just before t.
     pub fn velocity_before(&self, t: f64) -> DVec3 {
-        self.state(self.piece_before(t), t).velocity * self.unit
+        self.derivatives(self.piece_before(t), t)[0] * self.unit
     }
 
     /// Acceleration at t, units a second squared. At the tip of a cusp that is run
     /// through at constant speed it has no limit, and only its part along the path counts.
     pub fn acceleration(&self, t: f64) -> DVec3 {
-        self.state(self.piece_at(t), t).acceleration * self.unit
+        self.derivatives(self.piece_at(t), t)[1] * self.unit
     }
 
     /// Acceleration just before t.
     pub fn acceleration_before(&self, t: f64) -> DVec3 {
-        self.state(self.piece_before(t), t).acceleration * self.unit
+        self.derivatives(self.piece_before(t), t)[1] * self.unit
     }
 
     /// Unit direction of travel at t: where the speed is zero its limit from inside;
@@ -244,23 +239,20 @@ impl Path {
         (t.clamp(piece.start, piece.end) / self.duration).clamp(0.0, 1.0)
     }
 
-    fn state(&self, piece: &Piece, t: f64) -> State {
+    /// Velocity and acceleration at a time within a piece, in the path's unit.
+    fn derivatives(&self, piece: &Piece, t: f64) -> [DVec3; 2] {
         let u = self.parameter(piece, t);
-        let (position, [first, second]) = (piece.curve.at(u), piece.curve.derivatives(u));
+        let [first, second] = piece.curve.derivatives(u);
         let Some(ease) = self.steady else {
             let rate = 1.0 / piece.duration;
-            return State { position, velocity: first * rate, acceleration: second * (rate * rate) };
+            return [first * rate, second * (rate * rate)];
         };
         let [_, speed, change] = ease.at(self.fraction(piece, t));
         let (speed, change) =
             (speed * self.length / self.duration, change * self.length / (self.duration * self.duration));
         let tangent = piece.direction(u).unwrap_or(DVec3::ZERO);
         let turning = if piece.is_straight() { DVec3::ZERO } else { curvature(tangent, first, second) };
-        State {
-            position,
-            velocity: tangent * speed,
-            acceleration: tangent * change + turning * (speed * speed),
-        }
+        [tangent * speed, tangent * change + turning * (speed * speed)]
     }
 
     /// The pieces that overlap t0..t1, each with the range of its parameter that does.
@@ -338,8 +330,7 @@ impl Course for Path {
         self.acceleration(t)
     }
     fn rates(&self, t: f64) -> [DVec3; 2] {
-        let state = self.state(self.piece_at(t), t);
-        [state.velocity, state.acceleration].map(|rate| rate * self.unit)
+        self.derivatives(self.piece_at(t), t).map(|rate| rate * self.unit)
     }
     fn direction(&self, t: f64) -> Option<DVec3> {
         self.direction(t)

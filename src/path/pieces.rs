@@ -5,7 +5,6 @@ use super::bezier::Bezier;
 use super::cusps::cusps;
 use super::knots::COINCIDENT;
 use super::piece::Piece;
-use super::segments::Segments;
 
 /// A part of a segment that does not rest inside, and how far along the path it is.
 pub(super) struct Part {
@@ -13,8 +12,11 @@ pub(super) struct Part {
     /// Where it begins and ends in the segment, 0..=1.
     within: (f64, f64),
     curve: Bezier,
-    arc: ArcLength,
-    before: f64,
+    /// Its own arc length, where that is to be found again from lengths.
+    arc: Option<ArcLength>,
+    /// Length of the path up to where it begins, and up to where it ends.
+    pub(super) before: f64,
+    pub(super) behind: f64,
 }
 
 impl Part {
@@ -22,29 +24,30 @@ impl Part {
     pub(super) fn moves(&self) -> bool {
         self.curve.fastest() > COINCIDENT
     }
-
-    /// Length of the path up to the part's end.
-    pub(super) fn behind(&self) -> f64 {
-        self.before + self.arc.length()
-    }
 }
 
-/// Cuts segments where they rest inside, and measures the parts.
-pub(super) fn parts(segments: &Segments) -> Vec<Part> {
+/// Cuts segments where they rest inside, and measures the parts: so that places can be found by
+/// their length where the speed is `steady`.
+pub(super) fn parts(curves: Vec<Option<Bezier>>, steady: bool) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::new();
-    for (segment, curve) in segments.curves.iter().enumerate() {
+    for (segment, curve) in curves.into_iter().enumerate() {
         let Some(curve) = curve else { continue };
         for (within, curve) in cut(curve) {
             let arc = ArcLength::new(&curve);
-            let before = parts.last().map_or(0.0, Part::behind);
-            parts.push(Part { segment, within, curve, arc, before });
+            let before = parts.last().map_or(0.0, |part| part.behind);
+            let behind = before + arc.length();
+            parts.push(Part { segment, within, curve, arc: steady.then_some(arc), before, behind });
         }
     }
     parts
 }
 
-fn cut(curve: &Bezier) -> Vec<((f64, f64), Bezier)> {
-    let marks: Vec<f64> = [0.0].into_iter().chain(cusps(curve)).chain([1.0]).collect();
+fn cut(curve: Bezier) -> Vec<((f64, f64), Bezier)> {
+    let cusps = cusps(&curve);
+    if cusps.is_empty() {
+        return vec![((0.0, 1.0), curve)];
+    }
+    let marks: Vec<f64> = [0.0].into_iter().chain(cusps).chain([1.0]).collect();
     marks.windows(2).map(|m| ((m[0], m[1]), curve.part(m[0], m[1]))).collect()
 }
 
@@ -67,9 +70,9 @@ pub(super) fn keyed(parts: Vec<Part>, key_times: &[f64], steps: &[f64], duration
 /// `time_at`: when so much of the path is done.
 pub(super) fn steady(parts: Vec<Part>, time_at: impl Fn(f64) -> f64) -> Vec<Piece> {
     let timed = parts.into_iter().map(|part| {
-        let (start, end) = (time_at(part.before), time_at(part.behind()));
-        let Part { before, curve, arc, .. } = part;
-        Piece { start, end, duration: end - start, before, curve, arc: Some(arc), held: None }
+        let Part { before, behind, curve, arc, .. } = part;
+        let (start, end) = (time_at(before), time_at(behind));
+        Piece { start, end, duration: end - start, before, curve, arc, held: None }
     });
     with_directions(timed.filter(|piece| !piece.rests() && piece.duration > 0.0).collect())
 }
@@ -105,7 +108,7 @@ pub(super) fn steady_key_times(parts: &[Part], keys: usize, time_at: impl Fn(f64
     for key in 1..keys {
         times[key] = times[key - 1];
         while let Some(part) = next.next_if(|part| part.segment < key) {
-            times[key] = time_at(part.behind());
+            times[key] = time_at(part.behind);
         }
     }
     times
