@@ -19,9 +19,11 @@ use crate::curve::{Arc, Ends, Motion, NotClosed, Piece, Scheme};
 use crate::math::{Jet, Quat, Vec3};
 use crate::reduce::is_corner;
 use chord::Chord;
+use peaks::Hill;
 use quadrature::{Rule, Stretch};
 use rayon::prelude::*;
 use serde::Serialize;
+use std::sync::LazyLock;
 
 /// What is known of one motion. Degrees and seconds.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -172,14 +174,23 @@ fn estimated(motion: &Motion, keys: &[Quat], loops: bool) -> Figures {
     // Closed ends move the last key.
     let end = if loops { motion.at(times[times.len() - 1]) } else { keys[keys.len() - 1] };
     let key = |i: usize| if i + 1 == keys.len() { end } else { keys[i] };
+    let chord = |piece: &Piece| {
+        let after = times.partition_point(|&t| t <= piece.start).clamp(1, times.len() - 1);
+        Chord::new(key(after - 1), key(after), piece.at(0.0))
+    };
     let mut totals = Totals::new(times[0]);
     for (i, piece) in pieces.iter().enumerate() {
         if i > 0 && is_corner(&pieces[i - 1], piece) {
             totals.needed.stop();
         }
-        let after = times.partition_point(|&t| t <= piece.start).clamp(1, times.len() - 1);
-        totals.add(piece, &Chord::new(key(after - 1), key(after), piece.at(0.0)));
+        totals.add(i, piece, &chord(piece));
     }
+    let hills = std::mem::take(&mut totals.hills);
+    let on = |i: usize| {
+        let (piece, chord) = (&pieces[i], chord(&pieces[i]));
+        move |u: f64| measures(piece, &chord, u)
+    };
+    peaks::climb(&mut totals.peaks, hills, on, |i, u| time(&pieces[i], u));
     let [speed, acceleration, overshoot, stray] = totals.peaks;
     let [speed_rms, acceleration_rms] = totals.squares.map(|square| (square / totals.seconds).sqrt());
     Figures {
@@ -192,11 +203,14 @@ fn estimated(motion: &Motion, keys: &[Quat], loops: bool) -> Figures {
     }
 }
 
+/// The same for all motions.
+static RULE: LazyLock<Rule> = LazyLock::new(Rule::new);
+
 /// What adds up along a motion.
 struct Totals {
-    rule: Rule,
-    /// The largest of all [`measures`].
+    /// The largest of all [`measures`], and where they may be larger.
     peaks: [Peak; 4],
+    hills: Vec<Hill>,
     /// Integrals of the squares of speed and acceleration.
     squares: [f64; 2],
     seconds: f64,
@@ -206,20 +220,16 @@ struct Totals {
 impl Totals {
     fn new(start: f64) -> Totals {
         let peaks = [Peak { value: 0.0, time: start }; 4];
-        Totals {
-            rule: Rule::new(),
-            peaks,
-            squares: [0.0; 2],
-            seconds: 0.0,
-            needed: keys::Estimate::default(),
-        }
+        let needed = keys::Estimate::default();
+        Totals { peaks, hills: Vec::new(), squares: [0.0; 2], seconds: 0.0, needed }
     }
 
-    fn add(&mut self, piece: &Piece, chord: &Chord) {
-        let Totals { rule, peaks, squares, needed, .. } = self;
+    fn add(&mut self, index: usize, piece: &Piece, chord: &Chord) {
+        let Totals { peaks, hills, squares, needed, .. } = self;
+        let rule = &*RULE;
         let (measure, seconds) = (|u: f64| measures(piece, chord, u), piece.duration());
         for stretch in rule.stretches(measure, |stretch| is_resolved(rule, stretch, seconds)) {
-            peaks::raise(peaks, rule, piece, &stretch, measure);
+            peaks::raise(peaks, hills, rule, &stretch, (index, |u| time(piece, u)));
             for (square, [fine, _]) in squares.iter_mut().zip(mean_squares(rule, &stretch)) {
                 *square += seconds * fine;
             }
@@ -267,6 +277,11 @@ fn pieces(motion: &Motion) -> Vec<Piece> {
         }
     }
     pieces
+}
+
+/// When a piece is at a place.
+fn time(piece: &Piece, u: f64) -> f64 {
+    piece.start + u * piece.duration()
 }
 
 /// A motion at a time: radians and seconds, in the body's frame.

@@ -2,7 +2,6 @@
 
 use super::Peak;
 use super::quadrature::{PLACES, Rule, Stretch};
-use crate::curve::Piece;
 
 /// To what part of its stretch a search finds a place, whose value is then off by the square of
 /// that; and after how many steps it ends at last.
@@ -11,45 +10,93 @@ const STEPS: u32 = 60;
 /// What a search must promise to gain, relative to the value.
 const GAIN: f64 = 1e-12;
 
-/// Raises each peak to the largest value of its function on a stretch of a piece; `f` gives all
-/// at a place u of the piece, from 0 to 1.
+/// A stretch between two places of a piece that promises to be higher than anything seen.
+pub(super) struct Hill {
+    /// How high, and which of the functions.
+    promised: f64,
+    which: usize,
+    /// The piece, and where on it, from 0 to 1.
+    piece: usize,
+    from: f64,
+    to: f64,
+}
+
+impl Hill {
+    fn is_above(&self, peak: &Peak) -> bool {
+        self.promised > peak.value * (1.0 + GAIN)
+    }
+}
+
+/// Raises each peak to the largest of its function's values on a stretch of a piece, and keeps
+/// the hills that promise more.
 ///
-/// A maximum is found if the stretch's values resolve the function: if a parabola through
-/// three neighbouring ones shows it, its value is exact to about 1e-12. The parabola is one of
-/// the angle whose cosine the places are, in which they are even.
+/// A maximum is found if the stretch's values resolve the function: if one of them is higher
+/// than its neighbours. Its value is exact to about 1e-12. What hills promise is told by the angle
+/// whose cosine the places are, in which they are even.
 pub(super) fn raise<const N: usize>(
     peaks: &mut [Peak; N],
+    hills: &mut Vec<Hill>,
     rule: &Rule,
-    piece: &Piece,
     stretch: &Stretch<N>,
-    f: impl Fn(f64) -> [f64; N],
+    (piece, time): (usize, impl Fn(f64) -> f64),
 ) {
     let place = |i: usize| rule.place(stretch, i);
-    let time = |u: f64| piece.start + u * piece.duration();
     let last = PLACES - 1;
     for (which, peak) in peaks.iter_mut().enumerate() {
         let value = |i: usize| stretch.values[i][which];
         for i in 0..=last {
-            let highest = value(i) >= value(i.saturating_sub(1)) && value(i) >= value((i + 1).min(last));
-            if !highest {
+            let (before, after) = (i.saturating_sub(1), (i + 1).min(last));
+            if value(i) < value(before) || value(i) < value(after) {
                 continue;
             }
             peak.rise(value(i), time(place(i)));
-            let middle = i.clamp(1, last - 1);
-            if promised([value(middle - 1), value(middle), value(middle + 1)]) > peak.value * (1.0 + GAIN) {
-                let (from, to) = (place(i.saturating_sub(1)), place((i + 1).min(last)));
-                let (u, found) = highest_between(|u| f(u)[which], from, to);
-                peak.rise(found, time(u));
+            let promised = if before < i && i < after {
+                promised([value(before), value(i), value(after)])
+            } else {
+                let inwards = |n: usize| if i == 0 { n } else { last - n };
+                promised_at_end([0, 1, 2].map(|n| value(inwards(n))))
+            };
+            let hill = Hill { promised, which, piece, from: place(before), to: place(after) };
+            if hill.is_above(peak) {
+                hills.push(hill);
             }
         }
     }
 }
 
-/// The largest value on −1..=1 of the parabola through three values at −1, 0 and 1.
+/// Raises each peak to the tops of the hills that promise more, the highest first; `on` gives
+/// all functions on a piece, and `time` when it is at a place.
+pub(super) fn climb<const N: usize, F: Fn(f64) -> [f64; N]>(
+    peaks: &mut [Peak; N],
+    mut hills: Vec<Hill>,
+    on: impl Fn(usize) -> F,
+    time: impl Fn(usize, f64) -> f64,
+) {
+    hills.retain(|hill| hill.is_above(&peaks[hill.which]));
+    hills.sort_by(|a, b| b.promised.total_cmp(&a.promised));
+    for hill in hills {
+        let peak = &mut peaks[hill.which];
+        if hill.is_above(peak) {
+            let f = on(hill.piece);
+            let (u, found) = highest_between(|u| f(u)[hill.which], hill.from, hill.to);
+            peak.rise(found, time(hill.piece, u));
+        }
+    }
+}
+
+/// No less than the top of a hill whose highest values are these: a parabola through them rises a
+/// quarter as much above the middle one, or less.
 fn promised([before, at, after]: [f64; 3]) -> f64 {
-    let (slope, bend) = (0.5 * (after - before), 0.5 * (before + after) - at);
-    let x = if bend < 0.0 { (-0.5 * slope / bend).clamp(-1.0, 1.0) } else { 0.0 };
-    (at + x * (slope + x * bend)).max(before).max(after)
+    at + (at - 0.5 * (before + after)).max(0.0)
+}
+
+/// The largest value on 0..=1 of a + b x² + c x⁴ through three values at 0, 1 and 2: at the end of
+/// a stretch a function is even in the angle.
+fn promised_at_end([at, next, second]: [f64; 3]) -> f64 {
+    let b = (16.0 * next - second - 15.0 * at) / 12.0;
+    let c = (second - 4.0 * next + 3.0 * at) / 12.0;
+    let square = if c < 0.0 { (-0.5 * b / c).clamp(0.0, 1.0) } else { 0.0 };
+    (at + square * (b + square * c)).max(next)
 }
 
 /// Where a function with one maximum is largest, and how large: parabolas through the three
@@ -125,13 +172,24 @@ mod tests {
     }
 
     #[test]
-    fn a_parabola_promises_its_own_top() {
+    fn a_hill_promises_four_times_what_a_parabola_gains() {
         let parabola = |top: f64| move |x: f64| 3.0 - 0.5 * (x - top) * (x - top);
-        for top in [-0.9, 0.0, 0.4] {
-            let found = promised([-1.0, 0.0, 1.0].map(parabola(top)));
-            assert!((found - 3.0).abs() < 1e-15, "{top}: {found}");
+        for top in [-0.5, 0.0, 0.4] {
+            let values = [-1.0, 0.0, 1.0].map(parabola(top));
+            assert!((promised(values) - values[1] - 0.5).abs() < 1e-15, "{top}");
+            assert!(4.0 * (3.0 - values[1]) < 0.5 + 1e-15, "{top}");
         }
-        assert_eq!(promised([2.0, 1.0, 1.5]), 2.0);
-        assert_eq!(promised([1.0, 2.0, 3.0]), 3.0);
+        assert_eq!(promised([2.0, 2.0, 2.0]), 2.0);
+    }
+
+    #[test]
+    fn an_end_promises_what_is_even_there() {
+        let quartic = |top: f64| move |x: f64| 3.0 - (x * x - top) * (x * x - top);
+        for top in [0.2, 0.9] {
+            let found = promised_at_end([0.0, 1.0, 2.0].map(quartic(top)));
+            assert!((found - 3.0).abs() < 1e-14, "{top}: {found}");
+        }
+        assert_eq!(promised_at_end([2.0, 1.0, -2.0]), 2.0);
+        assert_eq!(promised_at_end([0.0, 1.0, 4.0]), 1.0);
     }
 }
