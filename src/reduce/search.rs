@@ -9,6 +9,7 @@ use super::curve::{Curve, on_ramp};
 use super::reach::{Ahead, Key, Limits, Remembered};
 use super::value::Value;
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// States that stay in each round.
 const BEAM: usize = 3;
@@ -37,15 +38,21 @@ pub(super) fn fewest<C: Curve>(
     careful: usize,
 ) -> Result<Vec<Key<C::Value>>, Stuck> {
     let exact = |time: f32| Key::new(time, curve.at(f64::from(time)));
-    let careful = search(curve, stops, limits, exact(stops[0]), careful)?;
+    let careful = search(curve, stops, limits, exact(stops[0]), careful, || false)?;
     let Found::Some(mut keys) = careful else { return Ok(careful.keys()) };
     let start = keys.pop().unwrap_or(exact(stops[0]));
     let swift = Limits { several: false, ..limits };
-    let part = |stops: &Vec<f32>| {
+    // The first part that is stuck; what follows need not be searched.
+    let stuck = AtomicUsize::new(usize::MAX);
+    let part = |(index, stops): (usize, &Vec<f32>)| {
         let first = if stops[0] == start.time { start } else { exact(stops[0]) };
-        search(curve, stops, swift, first, usize::MAX).map(Found::keys)
+        let in_vain = || stuck.load(Ordering::Relaxed) < index;
+        let found = search(curve, stops, swift, first, usize::MAX, in_vain).map(Found::keys);
+        found.inspect_err(|_| {
+            stuck.fetch_min(index, Ordering::Relaxed);
+        })
     };
-    let parts: Vec<_> = parts(curve.knots(), stops, start.time).par_iter().map(part).collect();
+    let parts: Vec<_> = parts(curve.knots(), stops, start.time).par_iter().enumerate().map(part).collect();
     for part in parts {
         // Each but the first begins with the key that ends the one before.
         let part = part?;
@@ -94,13 +101,15 @@ impl<V: Value> Found<V> {
     }
 }
 
-/// Keys from the first on to the last stop, or to where so many rounds lead.
+/// Keys from the first on to the last stop, or to where so many rounds lead, unless it turns out
+/// to be `in_vain`.
 fn search<C: Curve>(
     curve: &C,
     stops: &[f32],
     limits: Limits,
     first: Key<C::Value>,
     rounds: usize,
+    in_vain: impl Fn() -> bool,
 ) -> Result<Found<C::Value>, Stuck> {
     let curve = &Remembered::new(curve);
     let last = stops[stops.len() - 1];
@@ -114,7 +123,7 @@ fn search<C: Curve>(
         if let Some(end) = ends.iter().find(|end| end.key.time == last) {
             return Ok(Found::All(path(&nodes, end)));
         }
-        if ends.is_empty() {
+        if ends.is_empty() || in_vain() {
             return Err(Stuck(f64::from(beam[0].1.key().time)));
         }
         spread(&mut ends, &nodes, stops);
@@ -238,7 +247,7 @@ mod tests {
         let limits = Limits { tolerance, step: 0.15, step_slack: 0.0, on_curve: false, several: true };
         let keys = fewest(&curve, &stops, limits, 300).unwrap();
         let swift = Limits { several: false, ..limits };
-        let one = search(&curve, &stops, swift, keys[0], usize::MAX).unwrap().keys();
+        let one = search(&curve, &stops, swift, keys[0], usize::MAX, || false).unwrap().keys();
         assert!(keys.len() > 600 && keys.len() <= one.len() + 800 / KNOTS, "{} {}", keys.len(), one.len());
         assert!(keys.windows(2).all(|pair| pair[0].time < pair[1].time));
         assert_eq!(keys[keys.len() - 1].time, stops[1]);
