@@ -57,9 +57,29 @@ pub struct Levelled<A> {
     /// Level at 0, as it was from `lift` on; as it was up to `sink`, level at the end.
     lift: f64,
     sink: f64,
-    /// Pitch and roll at each node, signs continued from where they are whole.
-    tilts: Vec<Quat>,
+    tilts: Tilts,
     signs: Signs,
+}
+
+/// Pitch and roll at the nodes where some of them is taken, signs continued from where none is.
+#[derive(Default)]
+struct Tilts {
+    /// From a node backwards.
+    lifted: Signs,
+    lifts: usize,
+    /// From a node on.
+    sunk: Signs,
+    sinks: usize,
+}
+
+impl Tilts {
+    /// Pitch and roll soon after a node, with their sign.
+    fn follow(&self, node: usize, tilt: Quat) -> Quat {
+        match node.checked_sub(self.sinks) {
+            Some(since) => self.sunk.follow(since, tilt),
+            None => self.lifted.follow(self.lifts.saturating_sub(node), tilt),
+        }
+    }
 }
 
 impl<A: Attitude> Levelled<A> {
@@ -72,7 +92,7 @@ impl<A: Attitude> Levelled<A> {
         let sink = if level.end == 0 { end } else { before_last.copied().unwrap_or(0.0) };
         let vertical = passages(attitude.tangent(), NO_HEADING);
         let mut levelled =
-            Levelled { attitude, vertical, lift, sink, tilts: Vec::new(), signs: Signs::default() };
+            Levelled { attitude, vertical, lift, sink, tilts: Tilts::default(), signs: Signs::default() };
         levelled.tilts = levelled.tilts();
         levelled.signs = Signs::continued(levelled.nodes(), |i| levelled.turned(levelled.time(i)));
         levelled
@@ -86,19 +106,18 @@ impl<A: Attitude> Levelled<A> {
         self.attitude.tangent().node(node).0
     }
 
-    /// Pitch and roll at the nodes: the shorter way round where nothing of them is
-    /// taken yet, and continued from there to either end.
-    fn tilts(&self) -> Vec<Quat> {
-        let short = |i: usize| self.tilt(self.time(i)).1.aligned_to(Quat::IDENTITY);
-        let mut tilts: Vec<Quat> = (0..self.nodes()).map(short).collect();
+    /// The shorter way round where nothing of them is taken yet, and continued from there to
+    /// either end.
+    fn tilts(&self) -> Tilts {
         let node = |t: f64| self.attitude.tangent().index(t);
-        for i in (0..node(self.lift.min(self.sink))).rev() {
-            tilts[i] = tilts[i].aligned_to(tilts[i + 1]);
+        let (lifts, sinks) = (node(self.lift.min(self.sink)), node(self.sink));
+        let short = |i: usize| self.tilt(self.time(i)).1.aligned_to(Quat::IDENTITY);
+        Tilts {
+            lifted: Signs::continued(lifts + 1, |i| short(lifts - i)),
+            lifts,
+            sunk: Signs::continued(self.nodes() - sinks, |i| short(sinks + i)),
+            sinks,
         }
-        for i in node(self.sink) + 1..tilts.len() {
-            tilts[i] = tilts[i].aligned_to(tilts[i - 1]);
-        }
-        tilts
     }
 
     /// The level rotation at a time, and what pitch and roll add to it.
@@ -131,7 +150,7 @@ impl<A: Attitude> Levelled<A> {
             return self.attitude.at(t);
         }
         let (level, tilt) = self.tilt(t);
-        let tilt = tilt.aligned_to(self.tilts[self.attitude.tangent().index(t)]);
+        let tilt = self.tilts.follow(self.attitude.tangent().index(t), tilt);
         level * Quat::exp(tilt.log() * left)
     }
 }

@@ -80,6 +80,9 @@ impl<'a> Transport<'a> {
         };
         let cut = runs(course, &breaks);
         let mut all = run(&cut[0]);
+        // As many as the first run says and an eighth more, else they would take twice the memory.
+        let expected = all.nodes.len() * cut.len();
+        all.nodes.reserve_exact(expected / 8 + expected - all.nodes.len());
         // A few at a time, since all of them take as much memory again.
         for cut in cut[1..].chunks(AT_ONCE) {
             let runs: Vec<Transport> = cut.par_iter().map(run).collect();

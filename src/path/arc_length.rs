@@ -15,6 +15,9 @@ const NODES: [(f64, f64); 5] = [
 /// The error of a panel, relative to its length: a thousandth of what is promised.
 const ACCURACY: f64 = 1e-12;
 
+/// A step of Newton's method, in panels, after which the next would be lost in rounding.
+const CONVERGED: f64 = 1e-8;
+
 /// How often a panel is halved at most.
 const DEPTH: u32 = 50;
 
@@ -57,8 +60,9 @@ impl ArcLength {
 
     /// The u up to which the curve is `s` long, 0 and 1 for lengths outside.
     ///
-    /// Newton's method on the quadrature within one panel; where it would leave the
-    /// bracket, or the speed is zero, the bracket is halved instead.
+    /// Newton's method on the quadrature within one panel, from where the cubic with the panel's
+    /// speeds at its ends is as long; where it would leave the bracket, or the speed is zero,
+    /// the bracket is halved instead.
     pub(super) fn parameter(&self, curve: &Bezier, s: f64) -> f64 {
         if s <= 0.0 {
             return 0.0;
@@ -69,7 +73,7 @@ impl ArcLength {
         let after = self.marks.partition_point(|mark| mark.1 <= s).clamp(1, self.marks.len() - 1);
         let ((a, from), (b, to)) = (self.marks[after - 1], self.marks[after]);
         let (mut low, mut high) = (a, b);
-        let mut u = a + (b - a) * (s - from) / (to - from);
+        let mut u = a + (b - a) * guess(curve, (a, b), to - from, (s - from) / (to - from));
         for _ in 0..100 {
             let excess = quadrature(curve, a, u) - (s - from);
             if excess > 0.0 {
@@ -82,10 +86,24 @@ impl ArcLength {
                 break;
             }
             // Not a number (0/0) fails the comparison too.
-            u = if next > low && next < high { next } else { 0.5 * (low + high) };
+            let inside = next > low && next < high;
+            // The next step is about the square of this one, in panels.
+            if inside && (next - u).abs() <= CONVERGED * (b - a) {
+                return next;
+            }
+            u = if inside { next } else { 0.5 * (low + high) };
         }
         u
     }
+}
+
+/// About what part of a panel from a to b a part x of its length takes: Hermite's cubic, or x where
+/// the speed at an end is so low that it is no guide.
+fn guess(curve: &Bezier, (a, b): (f64, f64), length: f64, x: f64) -> f64 {
+    let slope = |u: f64| length / (curve.derivative(u).length() * (b - a));
+    let (m, n, rest) = (slope(a), slope(b), 1.0 - x);
+    let guess = x * x * (3.0 - 2.0 * x) + x * rest * (m * rest - n * x);
+    if m < 3.0 && n < 3.0 { guess } else { x }
 }
 
 /// ∫|B′| from a to b.

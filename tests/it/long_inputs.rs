@@ -46,6 +46,36 @@ fn points(kind: &str) -> String {
     text
 }
 
+/// 40,000 points from 0 to 9 in ten seconds: the least bytes to the most turns.
+fn digits() -> String {
+    let mut next = chance();
+    let mut digit = || (5.0 + 5.0 * next()).floor();
+    let mut text = "# catmull-rom 10\n".to_owned();
+    for _ in 0..40_000 {
+        writeln!(text, "{} {} {}", digit(), digit(), digit()).unwrap();
+    }
+    text
+}
+
+/// 12,000 rows of Euler angles that wander by up to 20°.
+fn angles() -> String {
+    let (mut next, mut at) = (chance(), [0.0; 3]);
+    let mut text = "# euler\n".to_owned();
+    for i in 0..12_000 {
+        at = at.map(|angle: f64| angle + 20.0 * next());
+        writeln!(text, "{:.2} {:.4} {:.4} {:.4}", 0.1 * f64::from(i), at[0], at[1], at[2]).unwrap();
+    }
+    text
+}
+
+/// Runs commands on files of a folder, each of which writes no more than so many bytes.
+#[track_caller]
+fn are_soon_done(folder: &Path, commands: &[(&str, u64)]) {
+    for (command, most) in commands {
+        is_soon_done(folder, command, *most);
+    }
+}
+
 /// Runs a command on files of a folder; it writes no more than so many bytes.
 #[track_caller]
 fn is_soon_done(folder: &Path, command: &str, most: u64) {
@@ -61,7 +91,7 @@ fn is_soon_done(folder: &Path, command: &str, most: u64) {
     let output = words.iter().position(|word| word == "-o").map(|at| &words[at + 1]);
     let written = output.map_or(0, |output| fs::metadata(output).unwrap().len()) + ran.stdout.len() as u64;
     assert!(written <= most, "{command} wrote {written} bytes");
-    if let Some(output) = output.filter(|output| !output.ends_with("kept.glb")) {
+    if let Some(output) = output.filter(|output| !output.contains("kept.")) {
         fs::remove_file(output).unwrap();
     }
 }
@@ -75,13 +105,18 @@ fn keys_by_every_scheme() {
         let command = format!("convert FOLDER/keys.dat --scheme {} -o FOLDER/out.glb", scheme.name());
         is_soon_done(folder, &command, 1_500_000);
     }
-    is_soon_done(folder, "convert FOLDER/keys.dat --tolerance 0.1 -o FOLDER/out.glb", 1_500_000);
-    is_soon_done(folder, "convert FOLDER/keys.dat --quantize -o FOLDER/kept.glb", 1_500_000);
-    is_soon_done(folder, "check FOLDER/kept.glb --against FOLDER/keys.dat", 1_000);
-    is_soon_done(folder, "reduce FOLDER/kept.glb --tolerance 1 -o FOLDER/out.glb", 1_500_000);
-    is_soon_done(folder, "compare FOLDER/keys.dat", 5_000);
-    is_soon_done(folder, "plot FOLDER/keys.dat --scheme all -o FOLDER/out.svg", 1_000_000);
-    is_soon_done(folder, "sample FOLDER/keys.dat -o FOLDER/out.csv", 3_000_000);
+    are_soon_done(
+        folder,
+        &[
+            ("convert FOLDER/keys.dat --tolerance 0.1 -o FOLDER/out.glb", 1_500_000),
+            ("convert FOLDER/keys.dat --quantize -o FOLDER/kept.glb", 1_500_000),
+            ("check FOLDER/kept.glb --against FOLDER/keys.dat", 1_000),
+            ("reduce FOLDER/kept.glb --tolerance 1 -o FOLDER/out.glb", 1_500_000),
+            ("compare FOLDER/keys.dat", 5_000),
+            ("plot FOLDER/keys.dat --scheme all -o FOLDER/out.svg", 1_000_000),
+            ("sample FOLDER/keys.dat -o FOLDER/out.csv", 3_000_000),
+        ],
+    );
 }
 
 #[test]
@@ -89,11 +124,33 @@ fn keys_of_many_boxes() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     fs::write(folder.join("keys.dat"), keys(500, 20)).unwrap();
-    is_soon_done(folder, "convert FOLDER/keys.dat -o FOLDER/kept.glb", 2_000_000);
-    is_soon_done(folder, "check FOLDER/kept.glb --against FOLDER/keys.dat", 100_000);
-    is_soon_done(folder, "convert FOLDER/keys.dat --tolerance 0.1 -o FOLDER/out.glb", 2_000_000);
-    is_soon_done(folder, "convert FOLDER/keys.dat --interpolation cubicspline -o FOLDER/out.glb", 2_000_000);
-    is_soon_done(folder, "sample FOLDER/keys.dat -o FOLDER/out.csv", 4_000_000);
+    are_soon_done(
+        folder,
+        &[
+            ("convert FOLDER/keys.dat -o FOLDER/kept.glb", 2_000_000),
+            ("check FOLDER/kept.glb --against FOLDER/keys.dat", 100_000),
+            ("convert FOLDER/keys.dat --tolerance 0.1 -o FOLDER/out.glb", 2_000_000),
+            ("convert FOLDER/keys.dat --interpolation cubicspline -o FOLDER/out.glb", 2_000_000),
+            ("compare FOLDER/keys.dat", 1_000_000),
+            ("sample FOLDER/keys.dat -o FOLDER/out.csv", 4_000_000),
+        ],
+    );
+}
+
+#[test]
+fn angles_and_json() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("angles.dat"), angles()).unwrap();
+    are_soon_done(
+        folder,
+        &[
+            ("convert FOLDER/angles.dat -o FOLDER/kept.gltf", 3_000_000),
+            ("check FOLDER/kept.gltf --against FOLDER/angles.dat", 1_000),
+            ("reduce FOLDER/kept.gltf --tolerance 1 -o FOLDER/out.gltf", 3_000_000),
+            ("convert FOLDER/angles.dat --tolerance 0.1 -o FOLDER/out.glb", 2_000_000),
+        ],
+    );
 }
 
 #[test]
@@ -102,13 +159,38 @@ fn paths_that_wind_and_paths_of_corners() {
     let folder = folder.path();
     for kind in ["catmull-rom", "polyline"] {
         fs::write(folder.join("path.dat"), points(kind)).unwrap();
-        is_soon_done(folder, "convert FOLDER/path.dat -o FOLDER/kept.glb", 3_000_000);
-        is_soon_done(folder, "check FOLDER/kept.glb --against FOLDER/path.dat", 2_000);
-        is_soon_done(folder, "convert FOLDER/path.dat --orient tangent -o FOLDER/out.glb", 3_000_000);
-        is_soon_done(folder, "convert FOLDER/path.dat --orient keyed -o FOLDER/out.glb", 3_000_000);
-        is_soon_done(folder, "plot FOLDER/path.dat -o FOLDER/out.svg", 1_000_000);
-        is_soon_done(folder, "sample FOLDER/path.dat -o FOLDER/out.csv", 4_000_000);
+        are_soon_done(
+            folder,
+            &[
+                ("convert FOLDER/path.dat -o FOLDER/kept.glb", 3_000_000),
+                ("check FOLDER/kept.glb --against FOLDER/path.dat", 2_000),
+                ("convert FOLDER/path.dat --orient tangent -o FOLDER/out.glb", 3_000_000),
+                ("convert FOLDER/path.dat --orient keyed -o FOLDER/out.glb", 3_000_000),
+                ("convert FOLDER/path.dat --timing constant-speed -o FOLDER/out.glb", 3_000_000),
+                ("plot FOLDER/path.dat -o FOLDER/out.svg", 1_000_000),
+                ("sample FOLDER/path.dat -o FOLDER/out.csv", 4_000_000),
+            ],
+        );
     }
     // Every corner is a jump of the rotation, and a key of its own before and after it.
     is_soon_done(folder, "convert FOLDER/path.dat --tolerance 0.01 -o FOLDER/out.glb", 1_500_000);
+}
+
+#[test]
+fn paths_that_turn_at_every_byte() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("path.dat"), digits()).unwrap();
+    are_soon_done(
+        folder,
+        &[
+            ("convert FOLDER/path.dat -o FOLDER/kept.glb", 1_500_000),
+            ("check FOLDER/kept.glb --against FOLDER/path.dat", 2_000),
+            ("convert FOLDER/path.dat --path-ends closed --level-end 9 -o FOLDER/out.glb", 1_500_000),
+            ("convert FOLDER/path.dat --timing constant-speed --orient none -o FOLDER/out.glb", 1_500_000),
+            ("convert FOLDER/path.dat --camera follow -o FOLDER/out.glb", 2_500_000),
+            ("convert FOLDER/path.dat --repeat 3 -o FOLDER/out.glb", 6_000_000),
+            ("sample FOLDER/path.dat --orient none --fps 1 -o FOLDER/out.csv", 2_000),
+        ],
+    );
 }
