@@ -186,7 +186,7 @@ fn paths_that_turn_at_every_byte() {
         &[
             ("convert FOLDER/path.dat -o FOLDER/kept.glb", 1_500_000),
             ("check FOLDER/kept.glb --against FOLDER/path.dat", 2_000),
-            ("convert FOLDER/path.dat --path-ends closed --level-end 9 -o FOLDER/out.glb", 1_500_000),
+            ("convert FOLDER/path.dat --path-ends closed --level-end 9 -o FOLDER/out.glb", 2_000_000),
             ("convert FOLDER/path.dat --timing constant-speed --orient none -o FOLDER/out.glb", 1_500_000),
             ("convert FOLDER/path.dat --camera follow -o FOLDER/out.glb", 2_500_000),
             ("convert FOLDER/path.dat --repeat 3 -o FOLDER/out.glb", 6_000_000),
