@@ -43,6 +43,13 @@ const GAUSS: [(f64, f64); 2] =
 /// Halvings to find a turn within an instant.
 const INSTANT: u32 = 30;
 
+/// Halvings for each segment, and for all of a run besides. A cubic turns by less than two
+/// whole turns, which takes some 30; a curve of a high degree takes hundreds. Where
+/// directions are rounding, as far behind the decimal point of a course's length, any number
+/// would be spent.
+const OWN_HALVINGS: usize = 64;
+const SHARED_HALVINGS: usize = 16_384;
+
 /// A time on the course and where it leads.
 #[derive(Clone, Copy, Debug)]
 struct Place {
@@ -105,9 +112,11 @@ impl<'a> Transport<'a> {
     /// Goes on from the last node, which is at the first of some breaks, to the last.
     fn carry(&mut self, breaks: &[f64], plan: Plan) {
         let mut node = self.nodes[self.nodes.len() - 1];
+        let mut halvings = Halvings { own: 0, shared: SHARED_HALVINGS };
         for pair in breaks.windows(2) {
+            halvings.own = OWN_HALVINGS;
             node = self.turn(node, pair[1]);
-            node = self.advance(node, pair[1], plan);
+            node = self.advance(node, pair[1], plan, &mut halvings);
         }
     }
 
@@ -192,7 +201,8 @@ impl<'a> Transport<'a> {
     }
 
     /// From a break to the next: to the limit from inside where that is a corner.
-    fn advance(&mut self, mut node: Node, end: f64, Plan { parts, least }: Plan) -> Node {
+    fn advance(&mut self, mut node: Node, end: f64, plan: Plan, halvings: &mut Halvings) -> Node {
+        let Plan { parts, least } = plan;
         let start = node.t;
         let share = TOLERANCE * ((end - start) / parts as f64) / self.course.duration();
         for part in 1..=parts {
@@ -201,20 +211,21 @@ impl<'a> Transport<'a> {
             if part == parts && is_corner(self.course, end) {
                 place.forward = before(self.course, start, end).unwrap_or(place.forward);
             }
-            node = self.walk(node, place, Effort { depth: 0, least, share, twist: f64::INFINITY });
+            let effort = Effort { depth: 0, least, share, twist: f64::INFINITY };
+            node = self.walk(node, place, effort, halvings);
         }
         node
     }
 
     /// Steps to a place, halved until one step and two agree on the twist.
-    fn walk(&mut self, start: Node, end: Place, effort: Effort) -> Node {
+    fn walk(&mut self, start: Node, end: Place, effort: Effort, halvings: &mut Halvings) -> Node {
         let middle = self.place(0.5 * (start.t + end.t), start.facing.forward);
         let halves = middle.t > start.t && middle.t < end.t;
         let forward = start.facing.forward;
         let turns = [forward - middle.forward, middle.forward - end.forward];
         let turn = turns[0].length().max(turns[1].length());
-        if halves && turn > LARGEST_TURN && effort.depth < INSTANT {
-            return self.halve(start, middle, end, effort.halved(effort.twist));
+        if halves && turn > LARGEST_TURN && effort.depth < INSTANT && halvings.take() {
+            return self.halve(start, middle, end, effort.halved(effort.twist), halvings);
         }
         let arc = start.facing.turned_to(end.forward);
         if turn > LARGEST_TURN || !halves {
@@ -224,17 +235,24 @@ impl<'a> Transport<'a> {
         let half = start.facing.turned_to(middle.forward).rolled(self.roll(forward, start.t, middle.t));
         let rest = self.roll(middle.forward, middle.t, end.t);
         let twist = whole.roll_to(half.turned_to(end.forward).rolled(rest).up);
-        if effort.is_asked(turn, twist.abs()) {
-            return self.halve(start, middle, end, effort.halved(twist.abs()));
+        if effort.is_asked(turn, twist.abs()) && halvings.take() {
+            return self.halve(start, middle, end, effort.halved(twist.abs()), halvings);
         }
         // Richardson: two steps err by 1/64 of what one does.
         let short = twist * 64.0 / 63.0;
         self.step(end.t, whole.rolled(short), Some(short))
     }
 
-    fn halve(&mut self, start: Node, middle: Place, end: Place, effort: Effort) -> Node {
-        let half = self.walk(start, middle, effort);
-        self.walk(half, end, effort)
+    fn halve(
+        &mut self,
+        start: Node,
+        middle: Place,
+        end: Place,
+        effort: Effort,
+        halvings: &mut Halvings,
+    ) -> Node {
+        let half = self.walk(start, middle, effort, halvings);
+        self.walk(half, end, effort, halvings)
     }
 
     /// A step from the last node, which is short of so much roll.
@@ -261,6 +279,22 @@ impl Plan {
     fn new(segments: usize) -> Plan {
         let least = if segments > MANY { LEAST_OF_MANY } else { LEAST };
         Plan { parts: (FIRST_STEPS / (segments + 1)).clamp(2, 16), least }
+    }
+}
+
+/// How often steps may still be halved: a segment by itself, and all of a run besides.
+struct Halvings {
+    own: usize,
+    shared: usize,
+}
+
+impl Halvings {
+    /// One of them, if there are any.
+    fn take(&mut self) -> bool {
+        let purse = if self.own > 0 { &mut self.own } else { &mut self.shared };
+        let any = *purse > 0;
+        *purse -= usize::from(any);
+        any
     }
 }
 
@@ -355,7 +389,7 @@ fn limit(course: &dyn Course, times: [f64; 3]) -> Option<DVec3> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::path::{Kind, Options, Path};
+    use crate::path::{Ease, Kind, Options, Path, Timing};
 
     #[test]
     fn the_rule_is_exact_from_the_second_to_the_fifth_degree() {
@@ -410,5 +444,19 @@ mod tests {
                 assert_eq!(plain.at(t).1, sized.at(t).1, "{size:e} at {t}");
             }
         }
+    }
+
+    #[test]
+    fn directions_that_are_rounding_are_not_chased() {
+        // Behind a way of 10²¹ what is left of the length has no digits: as time goes on,
+        // places jump to and fro.
+        let points = [[-10.0, 2.0, 0.0], [-1e21, 2.0, 5.0], [-10.0, 2.0, 0.0], [-10.0, 2.0, 0.0]];
+        let rest = [[-4.0, 0.8, 6.0], [4.0, 0.0, 6e5], [10.0, 2.0, 0.0]];
+        let points: Vec<DVec3> = points.into_iter().chain(rest).map(DVec3::from_array).collect();
+        let (timing, ease) = (Some(Timing::ConstantSpeed), Ease::Out);
+        let options = Options { timing, ease, ..Options::default() };
+        let path = Path::new(Kind::Bezier, &points, None, &options).unwrap();
+        let nodes = Transport::new(&path).nodes.len();
+        assert!(nodes > SHARED_HALVINGS && nodes < SHARED_HALVINGS + 1000, "{nodes}");
     }
 }
