@@ -71,6 +71,9 @@ fn unkept(error: reduce::Error, unit: &str, reserve: f64, shared: bool) -> Strin
         reduce::Error::Swings { .. } => {
             return format!("{error}: sample it at a rate (--fps) instead, or take --scheme bessel");
         }
+        reduce::Error::Spins { .. } => {
+            return format!("{error}: sample it at a rate (--fps) instead, or take --scheme slerp");
+        }
         reduce::Error::Times { time, tolerance } => format!(
             "float32 times cannot follow the curve at {time:.6} s to within {tolerance:.1e}{unit}: \
              choose a larger tolerance, or a rate (--fps) instead"

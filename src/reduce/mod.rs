@@ -82,6 +82,14 @@ pub enum Error {
         /// What was asked for, less what is reserved.
         tolerance: f64,
     },
+    /// The curve spins between its keys.
+    #[error("the curve spins after {time} s: to follow it takes more than {keys} keys")]
+    Spins {
+        /// Where it does so most, seconds.
+        time: f64,
+        /// How many would be all right.
+        keys: f64,
+    },
     /// The curve swings round or jumps.
     #[error("the curve swings round or jumps after {time} s, which no keys follow")]
     Swings {
@@ -173,6 +181,7 @@ fn reduce<C: Curve<Value: Value<Stored = [f32; N]>>, const N: usize>(
     let stuck = |Stuck(time)| Error::Times { time, tolerance: asked };
     steady(curve)?;
     pace::check(curve, tolerance).map_err(stuck)?;
+    pace::unwound(curve, step)?;
     let found = |limits: Limits| {
         let keys = search::fewest(curve, &stops, limits, options.careful)?;
         proof::prove(curve, &keys, tolerance, NEGLIGIBLE * tolerance)
@@ -187,6 +196,12 @@ fn reduce<C: Curve<Value: Value<Stored = [f32; N]>>, const N: usize>(
     }
     let on_curve = found(Limits { on_curve: true, ..limits }).map(|proven| written(curve, &proven, unit));
     Ok(on_curve.ok().filter(|other| other.times.len() < keys.times.len()).unwrap_or(keys))
+}
+
+impl From<pace::Spin> for Error {
+    fn from(pace::Spin { time, keys }: pace::Spin) -> Error {
+        Error::Spins { time, keys }
+    }
 }
 
 /// Refuses a curve that jumps.
