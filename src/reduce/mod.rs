@@ -83,12 +83,12 @@ pub enum Error {
         tolerance: f64,
     },
     /// The curve spins between its keys.
-    #[error("the curve spins after {time} s: to follow it takes more than {keys} keys")]
+    #[error("the curve spins, most of all after {time} s: keys follow {turns:.0} turns in all, not more")]
     Spins {
         /// Where it does so most, seconds.
         time: f64,
-        /// How many would be all right.
-        keys: f64,
+        /// How many turns would be all right.
+        turns: f64,
     },
     /// The curve swings round or jumps.
     #[error("the curve swings round or jumps after {time} s, which no keys follow")]
@@ -181,7 +181,7 @@ fn reduce<C: Curve<Value: Value<Stored = [f32; N]>>, const N: usize>(
     let stuck = |Stuck(time)| Error::Times { time, tolerance: asked };
     steady(curve)?;
     pace::check(curve, tolerance).map_err(stuck)?;
-    pace::unwound(curve, step)?;
+    pace::unwound(curve)?;
     let found = |limits: Limits| {
         let keys = search::fewest(curve, &stops, limits, options.careful)?;
         proof::prove(curve, &keys, tolerance, NEGLIGIBLE * tolerance)
@@ -199,8 +199,8 @@ fn reduce<C: Curve<Value: Value<Stored = [f32; N]>>, const N: usize>(
 }
 
 impl From<pace::Spin> for Error {
-    fn from(pace::Spin { time, keys }: pace::Spin) -> Error {
-        Error::Spins { time, keys }
+    fn from(pace::Spin { time, turns }: pace::Spin) -> Error {
+        Error::Spins { time, turns }
     }
 }
 

@@ -70,7 +70,7 @@ fn reduce<C: Curve<Value: Flat<N>>, const N: usize>(
     let stuck = |Stuck(time)| Error::Times { time, tolerance: options.tolerance };
     steady(curve)?;
     pace::check(curve, tolerance).map_err(stuck)?;
-    pace::unwound(curve, step)?;
+    pace::unwound(curve)?;
     let pieces = search::fewest(curve, &stops, limits).map_err(stuck)?;
     let proven = proof::prove(curve, pieces, limits, negligible).map_err(stuck)?;
     let longest =
