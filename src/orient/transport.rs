@@ -31,7 +31,7 @@ const LARGEST_TURN: f64 = 0.2;
 /// long courses, whose segments are cubics, about this many, and 2 a segment at least.
 const FIRST_STEPS: usize = 16_000;
 
-/// Halvings for accuracy: the twist of a step falls by 2⁻⁵⁰.
+/// Halvings for accuracy: the error of a step falls by 2⁻⁷⁰.
 const DEEPEST: u32 = 10;
 
 /// Nodes and weights of Gauss's rule of two points for what begins as the square of 0..=1: as
