@@ -50,9 +50,6 @@ pub fn convert(inputs: &Inputs, asked: Asked) -> Outcome {
 }
 
 fn planned(inputs: &Inputs, asked: Asked) -> Option<Outcome> {
-    if matches!(asked.sampling, Sampling::Fewest(_)) && spins(inputs, asked.scheme) {
-        return None;
-    }
     let options = Options {
         name: "fuzz".into(),
         inputs: inputs.hashes().iter().map(|_| "fuzz.dat".to_owned()).collect(),
@@ -80,17 +77,6 @@ fn planned(inputs: &Inputs, asked: Asked) -> Option<Outcome> {
     let report = check::asset(&mut asset);
     assert!(report.worst() < Some(Severity::Error), "{}", report.text("fuzz.glb"));
     Some(Outcome::File(bytes))
-}
-
-/// Whether keys are so uneven in time that a scheme spins thousands of times within the longest
-/// interval: rightly, to follow that takes millions of keys.
-fn spins(inputs: &Inputs, scheme: Scheme) -> bool {
-    use Scheme::{BarryGoldman, Bessel, BesselOverhauser, KochanekBartels, NaturalC2};
-    let velocities = [BarryGoldman, Bessel, BesselOverhauser, KochanekBartels, NaturalC2].contains(&scheme);
-    let times = inputs.keyframes.as_ref().map_or(&[][..], |keyframes| &keyframes.clip.times);
-    let gaps = times.windows(2).map(|pair| pair[1] - pair[0]).filter(|&gap| gap > 0.0);
-    let (least, most) = gaps.fold((f64::INFINITY, 0.0), |(a, b), gap| (gap.min(a), gap.max(b)));
-    velocities && most > 1000.0 * least
 }
 
 /// What went well; a refusal must have a message.

@@ -58,7 +58,14 @@ impl Quat {
         if sine == 0.0 {
             return Vec3::ZERO;
         }
-        self.v * (sine.atan2(self.w) / sine)
+        let angle = sine.atan2(self.w);
+        let ratio = angle / sine;
+        // Beside −1 the ratio of half a turn to almost nothing is no number, though the axis is.
+        if ratio.is_finite() {
+            self.v * ratio
+        } else {
+            Vec3::new(self.v.x / sine, self.v.y / sine, self.v.z / sine) * angle
+        }
     }
 
     /// The rotation angle between two unit quaternions, radians, in [0, π]; signs do
@@ -169,6 +176,14 @@ mod tests {
     fn distance(a: Quat, b: Quat) -> f64 {
         let d = [a.w - b.w, a.v.x - b.v.x, a.v.y - b.v.y, a.v.z - b.v.z];
         d.iter().map(|x| x * x).sum::<f64>().sqrt()
+    }
+
+    #[test]
+    fn beside_minus_one_the_axis_counts() {
+        for sine in [1e-300, 3e-308, 1.5e-323, 5e-324] {
+            let log = Quat { w: -1.0, v: Vec3::new(0.0, -sine, 0.0) }.log();
+            assert!((log - Vec3::new(0.0, -PI, 0.0)).length() < 1e-15, "{sine:e}: {log:?}");
+        }
     }
 
     proptest! {

@@ -3,7 +3,7 @@
 use super::Course;
 use super::facing::tilt;
 use super::smoothstep;
-use super::upright::STEEP;
+use super::steep::STEEP;
 use glam::DVec3;
 use rayon::prelude::*;
 

@@ -1,10 +1,12 @@
 //! Landing: pitch and roll taken away towards an end of the course.
 
-use super::facing::{Facing, tilt, turned};
+use super::facing::{tilt, turned};
 use super::passage::{Passage, passages};
-use super::{Attitude, Signs, Tangent, smoothstep, wrapped};
+use super::steps::{Spot, Steps};
+use super::{Attitude, Course, Signs, smoothstep, wrapped};
 use crate::math::{Quat, Vec3};
 use glam::DVec3;
+use std::ops::Range;
 
 /// Forward nearer to the vertical than this, radians, has no heading.
 const NO_HEADING: f64 = std::f64::consts::PI / 180.0;
@@ -57,119 +59,104 @@ pub struct Levelled<A> {
     /// Level at 0, as it was from `lift` on; as it was up to `sink`, level at the end.
     lift: f64,
     sink: f64,
-    tilts: Tilts,
+    /// Where that is.
+    parts: Vec<Part>,
+}
+
+/// Segments of which some pitch and roll is taken.
+struct Part {
+    segments: Range<usize>,
+    /// Signs of pitch and roll: the shorter way round where nothing of them is taken yet.
+    tilts: Signs,
+    /// Signs of what is left: as the attitude's where nothing is taken yet.
     signs: Signs,
-}
-
-/// Pitch and roll at the nodes where some of them is taken, signs continued from where none is.
-#[derive(Default)]
-struct Tilts {
-    /// From a node backwards.
-    lifted: Signs,
-    lifts: usize,
-    /// From a node on.
-    sunk: Signs,
-    sinks: usize,
-}
-
-impl Tilts {
-    /// Pitch and roll soon after a node, with their sign.
-    fn follow(&self, node: usize, tilt: Quat) -> Quat {
-        match node.checked_sub(self.sinks) {
-            Some(since) => self.sunk.follow(since, tilt),
-            None => self.lifted.follow(self.lifts.saturating_sub(node), tilt),
-        }
-    }
 }
 
 impl<A: Attitude> Levelled<A> {
     /// Levels an attitude over the first and last segments between key times.
     pub fn new(attitude: A, level: Level) -> Self {
-        let course = attitude.tangent().course();
-        let (keys, end) = (course.key_times(), course.duration());
+        let course = attitude.steps().course;
+        let (keys, end) = (course.key_times(), course.duration().max(0.0));
         let lift = if level.start == 0 { 0.0 } else { keys.get(level.start).copied().unwrap_or(end) };
         let before_last = keys.len().checked_sub(1 + level.end).and_then(|i| keys.get(i));
         let sink = if level.end == 0 { end } else { before_last.copied().unwrap_or(0.0) };
-        let vertical = passages(attitude.tangent(), NO_HEADING);
-        let mut levelled =
-            Levelled { attitude, vertical, lift, sink, tilts: Tilts::default(), signs: Signs::default() };
-        levelled.tilts = levelled.tilts();
-        levelled.signs = Signs::continued(levelled.nodes(), |i| levelled.turned(levelled.time(i)));
+        let vertical = passages(attitude.steps(), NO_HEADING);
+        let between = |from: f64, to: f64| attitude.steps().between(course.place(from), course.place(to));
+        let (lifted, sunk) = (between(0.0, lift.min(sink)), between(sink, end));
+        let mut levelled = Levelled { attitude, vertical, lift, sink, parts: Vec::new() };
+        let parts = [levelled.part(lifted, true), levelled.part(sunk, false)];
+        levelled.parts = parts.into_iter().flatten().collect();
         levelled
     }
 
-    fn nodes(&self) -> usize {
-        self.attitude.tangent().nodes()
+    /// What is taken of some segments, if there are any, up to their end or from their start.
+    fn part(&self, segments: Range<usize>, up_to_end: bool) -> Option<Part> {
+        let steps = self.attitude.steps();
+        let last = segments.clone().next_back()?;
+        let untaken = if up_to_end { steps.spots(last).last() } else { steps.spots(segments.start).next() }?;
+        let continued = |rotation: &(dyn Fn(&Spot) -> Quat + Sync), untaken: Quat| {
+            let signs = Signs::continued(steps, segments.clone(), rotation);
+            if up_to_end { signs.ending_as(untaken) } else { signs.starting_as(untaken) }
+        };
+        let tilts = continued(&|spot| self.tilt(spot).1, Quat::IDENTITY);
+        let signs = continued(&|spot| self.taken(spot, &tilts), self.attitude.at_spot(&untaken));
+        Some(Part { segments, tilts, signs })
     }
 
-    fn time(&self, node: usize) -> f64 {
-        self.attitude.tangent().node(node).0
-    }
-
-    /// The shorter way round where nothing of them is taken yet, and continued from there to
-    /// either end.
-    fn tilts(&self) -> Tilts {
-        let node = |t: f64| self.attitude.tangent().index(t);
-        let (lifts, sinks) = (node(self.lift.min(self.sink)), node(self.sink));
-        let short = |i: usize| self.tilt(self.time(i)).1.aligned_to(Quat::IDENTITY);
-        Tilts {
-            lifted: Signs::continued(lifts + 1, |i| short(lifts - i)),
-            lifts,
-            sunk: Signs::continued(self.nodes() - sinks, |i| short(sinks + i)),
-            sinks,
-        }
-    }
-
-    /// The level rotation at a time, and what pitch and roll add to it.
-    fn tilt(&self, t: f64) -> (Quat, Quat) {
-        let rotation = self.attitude.at(t);
-        let level = yaw(self.heading(t, turned(rotation, DVec3::Z)));
+    /// The level rotation at a spot, and what pitch and roll add to it.
+    fn tilt(&self, spot: &Spot) -> (Quat, Quat) {
+        let rotation = self.attitude.at_spot(spot);
+        let level = yaw(self.heading(spot.place.x, turned(rotation, DVec3::Z)));
         (level, level.conjugate() * rotation)
     }
 
-    /// The heading at a time, radians.
-    fn heading(&self, t: f64, forward: DVec3) -> f64 {
-        let next = self.vertical.partition_point(|passage| passage.end < t);
+    /// The heading at a place, radians.
+    fn heading(&self, x: f64, forward: DVec3) -> f64 {
+        let next = self.vertical.partition_point(|passage| passage.end < x);
         match self.vertical.get(next) {
-            Some(passage) if passage.start <= t => through(passage, t),
+            Some(passage) if passage.start <= x => through(self.attitude.steps().course, passage, x),
             _ => heading(forward),
         }
     }
 
-    /// How much of pitch and roll is left at a time, 0 to 1.
-    fn left(&self, t: f64) -> f64 {
-        let end = self.attitude.tangent().course().duration();
+    /// How much of pitch and roll is left at a place, 0 to 1.
+    fn left(&self, x: f64) -> f64 {
+        let course = self.attitude.steps().course;
+        let (t, end) = (course.time(x), course.duration());
         let lifted = if self.lift > 0.0 { smoothstep(t / self.lift) } else { 1.0 };
         let sinking = if self.sink < end { smoothstep((end - t) / (end - self.sink)) } else { 1.0 };
         lifted * sinking
     }
 
-    fn turned(&self, t: f64) -> Quat {
-        let left = self.left(t);
+    /// The rotation with some pitch and roll taken, its sign as it comes.
+    fn taken(&self, spot: &Spot, tilts: &Signs) -> Quat {
+        let left = self.left(spot.place.x);
         if left == 1.0 {
-            return self.attitude.at(t);
+            return self.attitude.at_spot(spot);
         }
-        let (level, tilt) = self.tilt(t);
-        let tilt = self.tilts.follow(self.attitude.tangent().index(t), tilt);
-        level * Quat::exp(tilt.log() * left)
+        let tilt = tilts.follow(self.attitude.steps(), spot, |spot| self.tilt(spot).1);
+        yaw(self.heading(spot.place.x, spot.place.forward)) * Quat::exp(tilt.log() * left)
     }
 }
 
 impl<A: Attitude> Attitude for Levelled<A> {
-    fn at(&self, t: f64) -> Quat {
-        self.signs.follow(self.attitude.tangent().index(t), self.turned(t))
+    fn at_spot(&self, spot: &Spot) -> Quat {
+        let part = self.parts.iter().find(|part| part.segments.contains(&spot.segment));
+        let Some(part) = part else { return self.attitude.at_spot(spot) };
+        part.signs.follow(self.attitude.steps(), spot, |spot| self.taken(spot, &part.tilts))
     }
 
-    fn tangent(&self) -> &Tangent<'_> {
-        self.attitude.tangent()
+    fn steps(&self) -> &Steps<'_> {
+        self.attitude.steps()
     }
 }
 
 /// The heading while forward is vertical.
-fn through(passage: &Passage, t: f64) -> f64 {
-    let of = |facing: Facing| heading(facing.forward);
+fn through(course: &dyn Course, passage: &Passage, x: f64) -> f64 {
+    let of = |spot: Spot| heading(spot.place.forward);
     let before = passage.before.map_or(0.0, of);
     let Some(after) = passage.after.map(of) else { return before };
-    let part = (t - passage.start) / (passage.end - passage.start).max(f64::MIN_POSITIVE);
+    let [start, end, t] = [passage.start, passage.end, x].map(|x| course.time(x));
+    let part = (t - start) / (end - start).max(f64::MIN_POSITIVE);
     before + smoothstep(part) * wrapped(after - before)
 }

@@ -10,6 +10,7 @@
 
 mod axis_angle;
 mod bank;
+mod carry;
 mod euler;
 mod facing;
 mod frame;
@@ -17,6 +18,10 @@ mod keyed;
 mod level;
 mod model;
 mod passage;
+mod recent;
+mod signs;
+mod steep;
+mod steps;
 mod tangent;
 mod transport;
 mod upright;
@@ -29,29 +34,35 @@ pub use frame::Frame;
 pub use keyed::keyed;
 pub use level::{Level, Levelled};
 pub use model::{Axis, ParallelAxes, model_frame};
+pub use steps::{Spot, Steps};
 pub use tangent::Tangent;
 pub use upright::Upright;
 
 use crate::math::Quat;
-use rayon::prelude::*;
+use signs::Signs;
 
 /// A rotation at every time of a course.
 pub trait Attitude: Sync {
     /// The rotation at a time, seconds; before the start and after the end that one's.
     /// Of unit length, its sign continuous wherever the rotation is.
-    fn at(&self, t: f64) -> Quat;
+    fn at(&self, t: f64) -> Quat {
+        self.at_spot(&self.steps().spot(t))
+    }
 
-    /// The rotation with the least twist that this one is told against.
-    fn tangent(&self) -> &Tangent<'_>;
+    /// The same at a place of the course.
+    fn at_spot(&self, spot: &Spot) -> Quat;
+
+    /// The steps of the course.
+    fn steps(&self) -> &Steps<'_>;
 }
 
 impl<A: Attitude + ?Sized> Attitude for Box<A> {
-    fn at(&self, t: f64) -> Quat {
-        (**self).at(t)
+    fn at_spot(&self, spot: &Spot) -> Quat {
+        (**self).at_spot(spot)
     }
 
-    fn tangent(&self) -> &Tangent<'_> {
-        (**self).tangent()
+    fn steps(&self) -> &Steps<'_> {
+        (**self).steps()
     }
 }
 
@@ -80,30 +91,6 @@ fn continued(rotations: impl Iterator<Item = Quat>) -> Vec<Quat> {
     let mut before = None;
     let follow = |q: Quat| *before.insert(before.map_or(q, |b| q.aligned_to(b)));
     rotations.map(follow).collect()
-}
-
-/// Rotations at nodes, each with the sign that follows on from the one before; as float32,
-/// since long courses have many nodes and only the sign is asked for.
-#[derive(Default)]
-struct Signs(Vec<[f32; 4]>);
-
-impl Signs {
-    fn continued(nodes: usize, rotation: impl Fn(usize) -> Quat + Sync) -> Signs {
-        let mut signs: Vec<[f32; 4]> =
-            (0..nodes).into_par_iter().map(|i| rotation(i).to_xyzw().map(|x| x as f32)).collect();
-        for i in 1..nodes {
-            let dot: f32 = signs[i - 1].iter().zip(signs[i]).map(|(a, b)| a * b).sum();
-            if dot < 0.0 {
-                signs[i] = signs[i].map(|x| -x);
-            }
-        }
-        Signs(signs)
-    }
-
-    /// A rotation soon after a node, with its sign.
-    fn follow(&self, node: usize, q: Quat) -> Quat {
-        q.aligned_to(Quat::from_xyzw(self.0[node].map(f64::from)))
-    }
 }
 
 #[cfg(test)]

@@ -1,65 +1,71 @@
-//! The times at which a course runs near the vertical.
+//! The places at which a course runs near the vertical.
 
-use super::Tangent;
-use super::facing::{Facing, tilt};
+use super::facing::tilt;
+use super::steps::{Spot, Steps};
 use rayon::prelude::*;
 
-/// A stretch of time during which forward is within some angle of the vertical.
+/// A stretch of a course on which forward is within some angle of the vertical.
 pub(super) struct Passage {
     pub(super) start: f64,
     pub(super) end: f64,
-    /// The facing as it begins: none where the course starts with it.
-    pub(super) before: Option<Facing>,
-    /// The facing as it ends: none where the course ends with it.
-    pub(super) after: Option<Facing>,
+    /// The last place before it: none where the course starts with it.
+    pub(super) before: Option<Spot>,
+    /// The first place after it: none where the course ends with it.
+    pub(super) after: Option<Spot>,
 }
 
 /// All passages nearer to the vertical than `limit`, radians, in order. On a closed
 /// course one that runs across the seam has its ends on both sides of it.
-pub(super) fn passages(tangent: &Tangent, limit: f64) -> Vec<Passage> {
+pub(super) fn passages(steps: &Steps, limit: f64) -> Vec<Passage> {
     let mut found: Vec<Passage> = Vec::new();
-    let open = |start, before| Passage { start, end: f64::INFINITY, before, after: None };
-    let (start, facing) = tangent.node(0);
-    if tilt(facing.forward) < limit {
-        found.push(open(start, None));
+    let end = f64::INFINITY;
+    let start = steps.start(0);
+    if tilt(start.forward) < limit {
+        found.push(Passage { start: start.x, end, before: None, after: None });
     }
-    let steps = (1..tangent.nodes()).into_par_iter();
-    let crossings: Vec<Crossing> = steps.flat_map_iter(|i| crossings(tangent, limit, i)).collect();
-    for Crossing { inwards, t, facing } in crossings {
+    let segments = (0..steps.segments()).into_par_iter();
+    let crossings: Vec<Crossing> = segments.flat_map_iter(|i| in_segment(steps, limit, i)).collect();
+    for Crossing { inwards, at } in crossings {
         if inwards {
-            found.push(open(t, Some(facing)));
+            found.push(Passage { start: at.place.x, end, before: Some(at), after: None });
         } else if let Some(passage) = found.last_mut() {
-            (passage.end, passage.after) = (t, Some(facing));
+            (passage.end, passage.after) = (at.place.x, Some(at));
         }
     }
-    if tangent.course().is_closed() {
+    if steps.course.is_closed() {
         join_at_seam(&mut found);
     }
     found
 }
 
-/// Where the limit is crossed, and the facing there, on the outside.
+/// Where the limit is crossed.
 struct Crossing {
     inwards: bool,
-    t: f64,
-    facing: Facing,
+    /// On the outside.
+    at: Spot,
 }
 
-/// The crossings in the step that ends at a node, in order.
-fn crossings(tangent: &Tangent, limit: f64, node: usize) -> impl Iterator<Item = Crossing> {
-    let [a, b] = [node - 1, node].map(|i| tangent.node(i));
-    let [near_a, near_b] = [a, b].map(|(_, facing)| tilt(facing.forward) < limit);
+/// The crossings in a segment and where it meets the next, in order.
+fn in_segment(steps: &Steps, limit: f64, segment: usize) -> Vec<Crossing> {
+    let mut spots: Vec<Spot> = steps.spots(segment).collect();
+    let next = segment + 1;
+    if next < steps.segments() {
+        spots.push(Spot { segment: next, step: 0, place: steps.start(next) });
+    }
+    spots.windows(2).flat_map(|pair| in_step(steps, limit, pair[0], pair[1])).collect()
+}
+
+/// The crossings between the ends of a step, in order.
+fn in_step(steps: &Steps, limit: f64, a: Spot, b: Spot) -> impl Iterator<Item = Crossing> {
+    let [near_a, near_b] = [a, b].map(|spot| tilt(spot.place.forward) < limit);
     let inside = match (near_a, near_b) {
         (true, true) => None,
-        (true, false) => Some(a.0),
-        (false, true) => Some(b.0),
-        (false, false) => dip(tangent, limit, a, b),
+        (true, false) => Some(a.place.x),
+        (false, true) => Some(b.place.x),
+        (false, false) => dip(steps, limit, a, b),
     };
-    let crossing = move |outside, inwards| {
-        inside.map(|inside| {
-            let (t, facing) = last_outside(tangent, limit, outside, inside);
-            Crossing { inwards, t, facing }
-        })
+    let crossing = |outside, inwards| {
+        inside.map(|inside| Crossing { inwards, at: last_outside(steps, limit, outside, inside) })
     };
     let inwards = if near_a { None } else { crossing(a, true) };
     let outwards = if near_b { None } else { crossing(b, false) };
@@ -73,32 +79,34 @@ fn join_at_seam(found: &mut [Passage]) {
     }
 }
 
-/// The time between one outside and one inside at which the limit is crossed, by
-/// bisection to the last bit, and the facing there.
-fn last_outside(tangent: &Tangent, limit: f64, outside: (f64, Facing), inside: f64) -> (f64, Facing) {
-    let (mut last, mut inside) = (outside.0, inside);
+/// The place between one outside and one inside at which the limit is crossed, by
+/// bisection to the last bit.
+fn last_outside(steps: &Steps, limit: f64, outside: Spot, inside: f64) -> Spot {
+    let (mut last, mut inside) = (outside.place, inside);
     for _ in 0..60 {
-        let middle = 0.5 * (last + inside);
-        if middle == last || middle == inside {
+        let x = 0.5 * (last.x + inside);
+        if x == last.x || x == inside {
             break;
         }
-        if tilt(tangent.forward(middle).1) < limit { inside = middle } else { last = middle }
+        let middle = steps.place(x, last.forward);
+        if tilt(middle.forward) < limit { inside = x } else { last = middle }
     }
-    // At a corner a time has two facings, of which this is the one.
-    if last == outside.0 { outside } else { (last, tangent.facing(last).1) }
+    // At a corner a place has two directions, of which this is the one.
+    if last.x == outside.place.x { outside } else { steps.in_segment(outside.segment, last.x) }
 }
 
-/// The time of least tilt between two nodes that are outside, if that is inside: a
+/// The place of least tilt between the ends of a step that are outside, if that is inside: a
 /// search by thirds, since over so short a step forward runs along an arc.
-fn dip(tangent: &Tangent, limit: f64, a: (f64, Facing), b: (f64, Facing)) -> Option<f64> {
-    let turn = (a.1.forward - b.1.forward).length();
+fn dip(steps: &Steps, limit: f64, a: Spot, b: Spot) -> Option<f64> {
+    let [a, b] = [a.place, b.place];
+    let turn = (a.forward - b.forward).length();
     // Tilt changes no faster than forward turns; an arc is at most 1.05 of its chord
     // up to one radian.
-    if a.0 == b.0 || tilt(a.1.forward) + tilt(b.1.forward) > 2.0 * limit + 1.05 * turn {
+    if a.x == b.x || tilt(a.forward) + tilt(b.forward) > 2.0 * limit + 1.05 * turn {
         return None;
     }
-    let tilted = |t: f64| tilt(tangent.forward(t).1);
-    let (mut from, mut to) = (a.0, b.0);
+    let tilted = |x: f64| tilt(steps.place(x, a.forward).forward);
+    let (mut from, mut to) = (a.x, b.x);
     for _ in 0..60 {
         let (low, high) = (from + (to - from) / 3.0, to - (to - from) / 3.0);
         if tilted(low) < tilted(high) { to = high } else { from = low }

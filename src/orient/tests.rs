@@ -8,8 +8,10 @@ mod upright;
 
 use super::facing::turned;
 use super::*;
+use crate::path::{Ease, Kind, Options, Path, PathEnds, Timing};
 use courses::*;
 use glam::DVec3;
+use proptest::prelude::*;
 
 /// Every attitude that a course can have.
 fn attitudes<'a>(course: &'a dyn Course) -> Vec<(&'static str, Box<dyn Attitude + 'a>)> {
@@ -81,6 +83,43 @@ fn rotations_and_their_signs_are_continuous_away_from_corners() {
             let (coarse, fine) = (largest(4000), largest(16000));
             assert!(fine < 0.4 * coarse + 1e-12, "{kind} on {name}: {coarse} {fine}");
             assert!(fine < 0.03, "{kind} on {name}: {fine}");
+        }
+    }
+}
+
+/// Paths through points of a small grid: plumb lines, corners, doubled points and reversals.
+fn on_a_grid() -> impl Strategy<Value = Path> {
+    let points = prop::collection::vec([-1..=1i8, -1..=1i8, -1..=1i8], 2..9);
+    let kinds = prop::sample::select(vec![Kind::Polyline, Kind::CatmullRom, Kind::CatmullRomCentripetal]);
+    let timings = prop::sample::select(vec![
+        (None, Ease::None),
+        (Some(Timing::ConstantSpeed), Ease::None),
+        (Some(Timing::ConstantSpeed), Ease::InOut),
+    ]);
+    (kinds, points, any::<bool>(), timings).prop_filter_map(
+        "no path",
+        |(kind, points, closes, (timing, ease))| {
+            let points: Vec<DVec3> =
+                points.into_iter().map(|p| DVec3::from_array(p.map(f64::from))).collect();
+            let ends = if closes { PathEnds::Closed } else { PathEnds::Natural };
+            Path::new(kind, &points, None, &Options { ends, timing, ease, ..Options::default() }).ok()
+        },
+    )
+}
+
+proptest! {
+    #[test]
+    fn every_attitude_looks_where_a_path_goes(path in on_a_grid()) {
+        for (kind, attitude) in attitudes(&path) {
+            for t in times(&path, 50) {
+                let q = attitude.at(t);
+                prop_assert!((q.norm() - 1.0).abs() < 1e-14, "{kind} at {t}");
+                // Near a cusp directions are rounding.
+                let tells = path.rates_at(path.place(t))[0].length() > 1e-5 && !kind.contains("levelled");
+                let Some(direction) = path.direction(t).filter(|_| tells) else { continue };
+                let off = (turned(q, DVec3::Z) - direction).length();
+                prop_assert!(off < 1e-9, "{kind} at {t}: {off}");
+            }
         }
     }
 }

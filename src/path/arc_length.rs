@@ -36,6 +36,7 @@ impl ArcLength {
         let whole = quadrature(curve, 0.0, 1.0);
         let mut arc = ArcLength { marks: vec![(0.0, 0.0)] };
         arc.panel(curve, (0.0, 1.0), whole, 1e-15 * whole, DEPTH);
+        arc.marks.shrink_to_fit();
         arc
     }
 
@@ -56,6 +57,13 @@ impl ArcLength {
     /// The length of the whole curve.
     pub(super) fn length(&self) -> f64 {
         self.marks.last().map_or(0.0, |mark| mark.1)
+    }
+
+    /// The length of the curve up to u.
+    pub(super) fn up_to(&self, curve: &Bezier, u: f64) -> f64 {
+        let after = self.marks.partition_point(|mark| mark.0 <= u).clamp(1, self.marks.len() - 1);
+        let (from, length) = self.marks[after - 1];
+        length + quadrature(curve, from, u)
     }
 
     /// The u up to which the curve is `s` long, 0 and 1 for lengths outside.

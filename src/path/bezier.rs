@@ -104,7 +104,9 @@ fn differences(points: &[DVec3]) -> Vec<DVec3> {
 /// Source: de Casteljau; Farin, Curves and Surfaces for CAGD, chapters 4 and 5.
 fn de_casteljau(points: &[DVec3], u: f64) -> [DVec3; 2] {
     match *points {
-        // Cubics and their derivatives, of which there may be thousands.
+        // Lines, cubics and their derivatives, of which there may be thousands.
+        [a] => [a, DVec3::ZERO],
+        [a, b] => reduce(&mut [a, b], u),
         [a, b, c] => reduce(&mut [a, b, c], u),
         [a, b, c, d] => reduce(&mut [a, b, c, d], u),
         _ => reduce(&mut points.to_vec(), u),

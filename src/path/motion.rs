@@ -206,8 +206,17 @@ impl Path {
 
     /// The piece that holds t: of two that meet there, the later one.
     fn piece_at(&self, t: f64) -> &Piece {
-        let after = self.pieces.partition_point(|piece| piece.start <= t);
-        &self.pieces[after.saturating_sub(1)]
+        &self.pieces[self.index_at(t)]
+    }
+
+    fn index_at(&self, t: f64) -> usize {
+        self.pieces.partition_point(|piece| piece.start <= t).saturating_sub(1)
+    }
+
+    /// The piece that holds a place, and the place in its curve, 0..=1.
+    fn piece_of(&self, place: f64) -> (&Piece, f64) {
+        let i = (place.max(0.0) as usize).min(self.pieces.len() - 1);
+        (&self.pieces[i], (place - i as f64).clamp(0.0, 1.0))
     }
 
     /// The piece that holds t: of two that meet there, the earlier one.
@@ -334,6 +343,40 @@ impl Course for Path {
     }
     fn direction(&self, t: f64) -> Option<DVec3> {
         self.direction(t)
+    }
+    /// The number of the piece, and the parameter of its curve.
+    fn place(&self, t: f64) -> f64 {
+        let i = self.index_at(t);
+        let piece = &self.pieces[i];
+        let (from, to) = (i as f64, (i + 1) as f64);
+        // What is before its end stays before it.
+        let last = if t < piece.end { to.next_down() } else { to };
+        (from + self.parameter(piece, t)).min(last)
+    }
+    fn time(&self, place: f64) -> f64 {
+        let (piece, u) = self.piece_of(place);
+        if u <= 0.0 {
+            return piece.start;
+        }
+        if u >= 1.0 {
+            return piece.end;
+        }
+        let t = match (self.steady, &piece.arc) {
+            (Some(ease), Some(arc)) => {
+                let way = piece.before + arc.up_to(&piece.curve, u);
+                self.duration * ease.inverse((way / self.length).min(1.0))
+            }
+            _ => piece.start + u * piece.duration,
+        };
+        t.clamp(piece.start, piece.end)
+    }
+    fn rates_at(&self, place: f64) -> [DVec3; 2] {
+        let (piece, u) = self.piece_of(place);
+        piece.curve.derivatives(u)
+    }
+    fn direction_at(&self, place: f64) -> Option<DVec3> {
+        let (piece, u) = self.piece_of(place);
+        piece.direction(u)
     }
     fn corners(&self) -> &[f64] {
         self.corners()

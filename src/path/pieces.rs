@@ -29,7 +29,7 @@ impl Part {
 /// Cuts segments where they rest inside, and measures the parts: so that places can be found by
 /// their length where the speed is `steady`.
 pub(super) fn parts(curves: Vec<Option<Bezier>>, steady: bool) -> Vec<Part> {
-    let mut parts: Vec<Part> = Vec::new();
+    let mut parts: Vec<Part> = Vec::with_capacity(curves.len());
     for (segment, curve) in curves.into_iter().enumerate() {
         let Some(curve) = curve else { continue };
         for (within, curve) in cut(curve) {

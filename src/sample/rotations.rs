@@ -128,9 +128,9 @@ fn sample(
 ) -> Chunk {
     let (before, times) = timeline.chunk(chunk);
     let times: Vec<f32> = before.into_iter().chain(times).collect();
-    let exact = match rotation {
-        Rotation::Motion(motion) => motion.at_all(&times),
-        Rotation::Function(at) => times.iter().map(|&t| at(f64::from(t))).collect(),
+    let (exact, between) = match rotation {
+        Rotation::Motion(motion) => (motion.at_all(&times), Vec::new()),
+        Rotation::Function(at) => looked_at(at, &times, writing.bound),
     };
     let mut rotations: Vec<[f32; 4]> = exact.iter().map(|&q| writing.encoding.numbers(q)).collect();
     let turned = align(&mut rotations);
@@ -150,8 +150,8 @@ fn sample(
             facts.deviation = Some(bounds.slerp.to_degrees());
             facts.nlerp = Some(bounds.nlerp.to_degrees());
         }
-        Rotation::Function(at) if writing.bound => {
-            facts.measured = Some(measured(at, &times, &rotations, writing.hold));
+        Rotation::Function(_) if writing.bound => {
+            facts.measured = Some(measured(&exact, &between, &rotations, writing.hold));
         }
         Rotation::Motion(_) | Rotation::Function(_) => {}
     }
@@ -163,20 +163,32 @@ fn sample(
 /// the middle, where a parabola peaks, and beside it.
 const BETWEEN: [f64; 3] = [0.25, 0.5, 0.75];
 
+/// A function at some times, and if asked for also between them: in the order of time, since it may
+/// remember what it was asked last.
+fn looked_at(at: &dyn Fn(f64) -> Quat, times: &[f32], between: bool) -> (Vec<Quat>, Vec<[Quat; 3]>) {
+    let (mut exact, mut inside) = (Vec::with_capacity(times.len()), Vec::new());
+    for (i, &t) in times.iter().enumerate() {
+        let start = f64::from(t);
+        exact.push(at(start));
+        if let Some(&next) = times.get(i + 1).filter(|_| between) {
+            inside.push(BETWEEN.map(|u| at(start + u * (f64::from(next) - start))));
+        }
+    }
+    (exact, inside)
+}
+
 /// The largest angle, degrees, between a function and the playback of its samples that
 /// shows at samples and between them.
-fn measured(at: &dyn Fn(f64) -> Quat, times: &[f32], rotations: &[[f32; 4]], hold: bool) -> f64 {
-    let off = |t: f64, played: Quat| played.angle_to(at(t)).to_degrees();
+fn measured(exact: &[Quat], between: &[[Quat; 3]], rotations: &[[f32; 4]], hold: bool) -> f64 {
     let mut worst: f64 = 0.0;
-    for (t, q) in times.windows(2).zip(rotations.windows(2)) {
-        let (start, h) = (f64::from(t[0]), f64::from(t[1]) - f64::from(t[0]));
+    let mut note = |played: Quat, exact: Quat| worst = worst.max(played.angle_to(exact).to_degrees());
+    for (i, q) in rotations.windows(2).enumerate() {
         let (a, b) = (written(q[0]), written(q[1]));
         let to = if hold { a } else { b };
         let step = (a.conjugate() * to.aligned_to(a)).log();
-        for u in BETWEEN {
-            worst = worst.max(off(start + u * h, a * Quat::exp(step * u)));
-        }
-        worst = worst.max(off(start + h, to)).max(off(start + h, b));
+        BETWEEN.into_iter().zip(between[i]).for_each(|(u, exact)| note(a * Quat::exp(step * u), exact));
+        note(to, exact[i + 1]);
+        note(b, exact[i + 1]);
     }
     worst
 }

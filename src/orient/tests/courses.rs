@@ -98,6 +98,11 @@ impl Polyline {
         course
     }
 
+    /// The same, which does not tell where it turns.
+    fn secretive(self) -> Self {
+        Polyline { corners: Vec::new(), ..self }
+    }
+
     fn chord(&self, i: usize) -> DVec3 {
         self.points[i + 1] - self.points[i]
     }
@@ -264,6 +269,12 @@ pub(super) fn all() -> Vec<(&'static str, Box<dyn Course>)> {
         ("reversal", Box::new(Polyline::new(&[[0.0; 3], [0.0, 0.0, 2.0], [0.0, 0.0, 1.0], [1.0, 0.0, 1.0]]))),
         ("upside down", Box::new(Polyline::new(&[[0.0; 3], [0.0, 3.0, 0.0], [0.0; 3]]))),
         ("tower", Box::new(Polyline::new(&[[0.0; 3], [0.0, 0.0, 2.0], [0.0, 2.0, 2.0], [3.0, 2.0, 2.0]]))),
+        (
+            "tower, corners unknown",
+            Box::new(
+                Polyline::new(&[[0.0; 3], [0.0, 0.0, 2.0], [0.0, 2.0, 2.0], [3.0, 2.0, 2.0]]).secretive(),
+            ),
+        ),
         ("standing", Box::new(Polyline::new(&[[1.0, 2.0, 3.0]; 4]))),
         (
             "pause",

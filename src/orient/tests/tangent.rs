@@ -1,9 +1,19 @@
+use super::super::carry::Carry;
+use super::super::facing::Facing;
+use super::super::steps::Steps;
 use super::super::transport::Transport;
 use super::*;
 use crate::math::Vec3;
 use crate::math::{Jet, Scalar};
 use glam::{DQuat, DVec3};
 use std::f64::consts::TAU;
+
+impl Tangent<'_> {
+    fn facing_at(&self, t: f64) -> Facing {
+        let q = self.at(t);
+        Facing { forward: turned(q, DVec3::Z), up: turned(q, DVec3::Y) }
+    }
+}
 
 /// 1e-6 degrees.
 const PROMISED: f64 = 1e-6 * TAU / 360.0;
@@ -17,8 +27,8 @@ fn a_helix_twists_against_its_normal_by_the_torsion() {
         let tangent = Tangent::new(&course);
         let per_radian = rise / f64::hypot(2.0, rise);
         let behind = |t: f64| {
-            let (normal, (_, facing)) = (DVec3::new(-t.cos(), 0.0, -t.sin()), tangent.facing(t));
-            facing.roll_to(normal)
+            let normal = DVec3::new(-t.cos(), 0.0, -t.sin());
+            tangent.facing_at(t).roll_to(normal)
         };
         let start = behind(0.0);
         for t in times(&course, 97) {
@@ -67,9 +77,11 @@ fn a_closed_course_comes_back_as_it_left() {
     let tangent = Tangent::new(&course);
     assert!(tangent.at(0.0).angle_to(tangent.at(6.0)) < 1e-12);
     // It would not by itself, and what closes it is even along the way.
-    let open = Transport::new(&course);
-    let twist = |t: f64| open.at(t).1.roll_to(tangent.facing(t).1.up);
-    let total = wrapped(open.at(6.0).1.roll_to(open.at(0.0).1.up));
+    let steps = Steps::new(&course);
+    let open = Transport::open(&steps);
+    let open = |t: f64| open.facing(&steps, &steps.spot(t));
+    let twist = |t: f64| open(t).roll_to(tangent.facing_at(t).up);
+    let total = wrapped(open(6.0).roll_to(open(0.0).up));
     assert!(total.abs() > 0.5, "the test's own course: {total}");
     let speed = |t: f64| course.velocity(t).length();
     let (mut length, mut all) = (0.0, 0.0);
@@ -87,7 +99,7 @@ fn a_closed_course_comes_back_as_it_left() {
 fn a_closed_polyline_comes_back_round_its_last_corner() {
     let course = Polyline::new(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 2.0, 1.0], [0.0; 3]]);
     let tangent = Tangent::new(&course);
-    let ((_, first), (_, last)) = (tangent.facing(0.0), tangent.facing(3.0));
+    let (first, last) = (tangent.facing_at(0.0), tangent.facing_at(3.0));
     assert!((last.turned_to(first.forward).up - first.up).length() < 1e-14);
 }
 
@@ -141,7 +153,9 @@ fn a_turn_of_the_world_turns_the_motion() {
 fn the_partition_stays_small() {
     // Rounding far from the origin, turns within an instant: neither may be chased.
     for (name, course) in all() {
-        let nodes = Tangent::new(&*course).nodes();
+        let steps = Steps::new(&*course);
+        let carry = Carry::new(&steps, false);
+        let nodes: usize = (0..steps.segments()).map(|i| carry.nodes(&steps, i).len()).sum();
         assert!(nodes < 4000, "{name}: {nodes}");
     }
 }

@@ -108,9 +108,9 @@ fn the_lean_wraps_round_the_seam_of_a_closed_course() {
 fn passages_are_found_between_nodes_too() {
     // Drift 0.1 over a loop of 6π: 0.3° off the vertical at best, twice.
     let course = looping(0.1);
-    let tangent = Tangent::new(&course);
+    let steps = Steps::new(&course);
     for degrees in [15.0f64, 1.0, 0.31] {
-        let found = super::super::passage::passages(&tangent, f64::to_radians(degrees));
+        let found = super::super::passage::passages(&steps, f64::to_radians(degrees));
         assert_eq!(found.len(), 2, "{degrees}");
         for (passage, middle) in found.iter().zip([1.0, 3.0]) {
             // The loop turns by 90° a second; across the cone it is 2√(limit² − off²).
@@ -118,9 +118,31 @@ fn passages_are_found_between_nodes_too() {
             let expected = 2.0 * (degrees * degrees - off * off).sqrt();
             assert!(((passage.end - passage.start) * 90.0 - expected).abs() < 1e-3 * expected);
             assert!((0.5 * (passage.start + passage.end) - middle).abs() < 1e-9);
-            for facing in [passage.before, passage.after] {
-                assert!((tilt(facing.expect("inside").forward) - f64::to_radians(degrees)).abs() < 1e-9);
+            for edge in [passage.before, passage.after] {
+                assert!((tilt(edge.expect("inside").place.forward) - f64::to_radians(degrees)).abs() < 1e-9);
             }
+        }
+    }
+}
+
+#[test]
+fn a_steep_passage_may_run_across_the_seam() {
+    // The same closed loop from four of its places: upright is told by what is near.
+    use crate::math::{Jet, Vec3};
+    let loops = [0.0, 1.0, 2.0, 3.0].map(|start| {
+        let formula = move |t: Jet| {
+            let angle = (t + number(start)) * number(std::f64::consts::TAU / 4.0);
+            let (sin, cos) = angle.sin_cos();
+            Vec3::new((angle * number(2.0)).sin_cos().0 * number(0.05), number(1.0) - cos, sin)
+        };
+        Smooth::new(4.0, 3, formula).closed()
+    });
+    let [first, others @ ..] = [0, 1, 2, 3].map(|i| Upright::new(&loops[i], 0.0));
+    for (other, start) in others.iter().zip([1.0, 2.0, 3.0]) {
+        for i in 0..400 {
+            let t = f64::from(i) / 100.0;
+            let error = other.at(t).angle_to(first.at((t + start) % 4.0));
+            assert!(error < 1e-9, "from {start} at {t}: {error}");
         }
     }
 }
