@@ -1,7 +1,7 @@
 //! Landing: pitch and roll taken away towards an end of the course.
 
 use super::facing::{tilt, turned};
-use super::passage::{Passage, passages};
+use super::passage::{Passage, meet_at_seam, passages};
 use super::steps::{Spot, Steps};
 use super::{Attitude, Course, Signs, smoothstep, wrapped};
 use crate::math::{Quat, Vec3};
@@ -80,7 +80,7 @@ impl<A: Attitude> Levelled<A> {
         let lift = if level.start == 0 { 0.0 } else { keys.get(level.start).copied().unwrap_or(end) };
         let before_last = keys.len().checked_sub(1 + level.end).and_then(|i| keys.get(i));
         let sink = if level.end == 0 { end } else { before_last.copied().unwrap_or(0.0) };
-        let vertical = passages(attitude.steps(), NO_HEADING);
+        let vertical = vertical(attitude.steps());
         let between = |from: f64, to: f64| attitude.steps().between(course.place(from), course.place(to));
         let (lifted, sunk) = (between(0.0, lift.min(sink)), between(sink, end));
         let mut levelled = Levelled { attitude, vertical, lift, sink, parts: Vec::new() };
@@ -149,6 +149,17 @@ impl<A: Attitude> Attitude for Levelled<A> {
     fn steps(&self) -> &Steps<'_> {
         self.attitude.steps()
     }
+}
+
+/// Where a course has no heading; what runs across its seam has its edges on both sides of it.
+fn vertical(steps: &Steps) -> Vec<Passage> {
+    let mut found = passages(steps, NO_HEADING);
+    if meet_at_seam(steps, &found)
+        && let [first, .., last] = &mut found[..]
+    {
+        (first.before, last.after) = (last.before, first.after);
+    }
+    found
 }
 
 /// The heading while forward is vertical.

@@ -1,13 +1,12 @@
 //! Up near +Y, also where the course runs near the vertical.
 
-use super::carry::Carry;
+use super::carry::{Carry, Node};
 use super::facing::{Facing, tilt};
-use super::passage::{Passage, passages};
+use super::passage::{Passage, meet_at_seam, passages};
 use super::steps::{Spot, Steps};
-use super::transport::{Stretch, Transport};
+use super::transport::{Roll, Stretch, Transport};
 use super::{smoothstep, wrapped};
 use rayon::prelude::*;
-use std::ops::RangeInclusive;
 
 /// Nearer to the vertical than this, radians, up is no longer told by +Y alone.
 pub(super) const STEEP: f64 = 15.0 * std::f64::consts::PI / 180.0;
@@ -20,13 +19,12 @@ pub(super) enum Steep {
     Some { carry: Carry, passages: Vec<Steeped> },
 }
 
-/// A passage, and what is known of up on it.
+/// A passage, and up as it is carried along.
 pub(super) struct Steeped {
     passage: Passage,
-    /// Up as it is carried along.
     carried: Stretch,
-    /// The roll, relative to that, of the up that the passage keeps.
-    kept: f64,
+    /// The rolls, relative to that, of the up nearest to +Y where the passage begins and ends.
+    edges: [Option<f64>; 2],
 }
 
 impl Steep {
@@ -35,19 +33,13 @@ impl Steep {
         if let [Passage { before: None, after: None, .. }] = passages[..] {
             return Steep::All(Transport::new(steps));
         }
+        let meet = meet_at_seam(steps, &passages);
         let carry = Carry::new(steps, false);
-        let carried = carried(steps, &carry, &passages);
-        let roll = |i: usize, edge: &Spot| carried[i].facing(&carry, steps, edge).roll_to_upright();
-        let (last, is_joined) = (carried.len().saturating_sub(1), joined(&passages));
-        let kept = |i: usize| {
-            // Across the seam each has one of the edges of both.
-            let edges = if is_joined && (i == 0 || i == last) { [last, 0] } else { [i, i] };
-            let Passage { before, after, .. } = &passages[i];
-            kept(before.map(|edge| roll(edges[0], &edge)), after.map(|edge| roll(edges[1], &edge)))
-        };
-        let kept: Vec<f64> = (0..passages.len()).into_par_iter().map(kept).collect();
-        let all = passages.into_iter().zip(carried).zip(kept);
-        let passages = all.map(|((passage, carried), kept)| Steeped { passage, carried, kept }).collect();
+        let along = |passage| Steeped::new(&carry, steps, passage, None);
+        let mut passages: Vec<Steeped> = passages.into_par_iter().map(along).collect();
+        if let (true, [first, .., last]) = (meet, &mut passages[..]) {
+            first.follow(&carry, steps, last);
+        }
         Steep::Some { carry, passages }
     }
 
@@ -67,6 +59,23 @@ impl Steep {
 }
 
 impl Steeped {
+    /// Carried on from the end of a segment with its roll, or by itself.
+    fn new(carry: &Carry, steps: &Steps, passage: Passage, from: Option<(Node, Roll)>) -> Steeped {
+        let segment = |edge: Option<Spot>, x: f64| edge.map_or_else(|| steps.segment(x), |edge| edge.segment);
+        let segments = segment(passage.before, passage.start)..=segment(passage.after, passage.end);
+        let carried = Stretch::new(carry, steps, segments, from);
+        let roll = |edge: Spot| carried.facing(carry, steps, &edge).roll_to_upright();
+        let edges = [passage.before, passage.after].map(|edge| edge.map(roll));
+        Steeped { passage, carried, edges }
+    }
+
+    /// Makes it one with the last passage, from which it follows on across the seam.
+    fn follow(&mut self, carry: &Carry, steps: &Steps, last: &mut Steeped) {
+        let end = last.carried.end(carry, steps);
+        *self = Steeped::new(carry, steps, self.passage, Some(end));
+        (self.edges[0], last.edges[1]) = (last.edges[0], self.edges[1]);
+    }
+
     /// Whether a spot is on the passage; not on the other side of a corner at its edge.
     fn holds(&self, spot: &Spot) -> bool {
         let on = self.passage.start <= spot.place.x && spot.place.x <= self.passage.end;
@@ -75,46 +84,21 @@ impl Steeped {
 
     fn facing(&self, carry: &Carry, steps: &Steps, spot: &Spot) -> Facing {
         let facing = self.carried.facing(carry, steps, spot);
+        let kept = self.kept();
         // A course that ends steep, or starts so, has no upright to come back to: what
         // is carried to its end cannot be opposed on the way.
-        let passes = self.passage.before.is_some() && self.passage.after.is_some();
+        let passes = self.edges.iter().all(Option::is_some);
         let weight = if passes { smoothstep(tilt(spot.place.forward) / STEEP) } else { 0.0 };
-        facing.rolled(self.kept + blend(facing.roll_to_upright() - self.kept, weight))
+        facing.rolled(kept + blend(facing.roll_to_upright() - kept, weight))
     }
-}
 
-/// Up carried along each passage; from the last on to the first where they are one across the
-/// seam.
-fn carried(steps: &Steps, carry: &Carry, passages: &[Passage]) -> Vec<Stretch> {
-    let along = |passage: &Passage| Stretch::new(carry, steps, segments(steps, passage), None);
-    let mut carried: Vec<Stretch> = passages.par_iter().map(along).collect();
-    if let (true, Some(last)) = (joined(passages), carried.last()) {
-        let end = last.end(carry, steps);
-        carried[0] = Stretch::new(carry, steps, segments(steps, &passages[0]), Some(end));
-    }
-    carried
-}
-
-/// Whether the last passage is the first one's beginning, across the seam.
-fn joined(passages: &[Passage]) -> bool {
-    matches!(passages, [first, .., _] if first.before.is_some_and(|edge| edge.place.x != first.start))
-}
-
-/// The segments that a passage and its own edges lie in.
-fn segments(steps: &Steps, passage: &Passage) -> RangeInclusive<usize> {
-    let own = |edge: Option<Spot>, x: f64| {
-        let edge = edge.filter(|edge| edge.place.x == x);
-        edge.map_or_else(|| steps.segment(x), |edge| edge.segment)
-    };
-    own(passage.before, passage.start)..=own(passage.after, passage.end)
-}
-
-/// The roll that a passage keeps: halfway from that at its start to that at its end, or
-/// of the one it has.
-fn kept(before: Option<f64>, after: Option<f64>) -> f64 {
-    match (before, after) {
-        (Some(before), Some(after)) => before + 0.5 * wrapped(after - before),
-        (one, other) => one.or(other).unwrap_or(0.0),
+    /// The roll, relative to what is carried, of the up that the passage keeps: halfway from that
+    /// at its start to that at its end, or of the one it has.
+    fn kept(&self) -> f64 {
+        match self.edges {
+            [Some(before), Some(after)] => before + 0.5 * wrapped(after - before),
+            [one, other] => one.or(other).unwrap_or(0.0),
+        }
     }
 }
 

@@ -9,13 +9,16 @@ pub(super) struct Bezier {
     points: Vec<DVec3>,
     /// Control points N(Pᵢ₊₁ − Pᵢ) of the derivative, the hodograph.
     hodograph: Vec<DVec3>,
+    /// The length of the longest of those.
+    fastest: f64,
 }
 
 impl Bezier {
     /// The curve of degree `points.len()` − 1, which is at least 1.
     pub(super) fn new(points: Vec<DVec3>) -> Bezier {
         let hodograph = differences(&points);
-        Bezier { points, hodograph }
+        let fastest = longest(&hodograph);
+        Bezier { points, hodograph, fastest }
     }
 
     /// The cubic from `start` to `end` with these derivatives at its ends.
@@ -66,7 +69,7 @@ impl Bezier {
 
     /// The largest control point of the derivative, an upper bound of |B′|.
     pub(super) fn fastest(&self) -> f64 {
-        longest(&self.hodograph)
+        self.fastest
     }
 
     /// The curve up to u and the curve from u on.
