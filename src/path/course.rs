@@ -32,8 +32,8 @@ pub trait Course: Sync {
     fn time(&self, place: f64) -> f64 {
         place
     }
-    /// First and second derivative of position by place, in one unit of length all along that makes
-    /// the course about 1 large; where one jumps, the later value.
+    /// First and second derivative of position by place, in any unit of length, of whose numbers
+    /// the third powers are numbers; where one jumps, the later value.
     fn rates_at(&self, place: f64) -> [DVec3; 2] {
         self.rates(place)
     }
