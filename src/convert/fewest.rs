@@ -2,6 +2,7 @@
 
 use super::chosen::{Chosen, Values, held};
 use super::facts::Seen;
+use super::together::{InTurn, Refused};
 use crate::math::Quat;
 use crate::moves::{Ground, Move, Mover, Turn};
 use crate::reduce::{self, Attitude, CubicKeys, Curve, Numbers, Travelling, Turning};
@@ -92,8 +93,27 @@ fn all(
 ) -> Result<Vec<Chosen>, Unkept> {
     // All share in the care, so that a file does not take the longer the more moves it has.
     let careful = (CAREFUL / moves.len().max(1)).min(reduce::Options::CAREFUL);
-    let chosen = |(a_move, allowed)| chosen(a_move, end, allowed, careful, fewest, encoding);
-    moves.into_par_iter().map(chosen).collect()
+    // Rotations first: it is them that float32's times cannot keep, if anything.
+    let count = moves.len();
+    let turn = |i: usize, a_move: &Move| if matches!(a_move, Move::Travel(_)) { count + i } else { i };
+    let refused = Refused::none();
+    let chosen = |(i, (a_move, allowed))| {
+        let turn = turn(i, a_move);
+        let chosen = chosen(a_move, end, allowed, careful, fewest, encoding, (turn, &refused));
+        chosen.map_err(|unkept| {
+            refused.note(turn);
+            (turn, unkept)
+        })
+    };
+    let (mut all, mut unkept) = (Vec::with_capacity(count), Vec::new());
+    let found: Vec<Result<Chosen, (usize, Unkept)>> = moves.into_par_iter().enumerate().map(chosen).collect();
+    for found in found {
+        match found {
+            Ok(chosen) => all.push(chosen),
+            Err(error) => unkept.push(error),
+        }
+    }
+    unkept.into_iter().min_by_key(|(turn, _)| *turn).map_or(Ok(all), |(_, first)| Err(first))
 }
 
 /// What is known of moves that have keys of their own.
@@ -138,7 +158,7 @@ fn allowed(ground: &Ground, mover: Mover, a_move: &Move, sharing: usize, fewest:
 }
 
 /// The fewest keys of a move from 0 to `end`. `allowed`: how far it may be off, degrees or
-/// units; `careful`: how many are chosen with care.
+/// units; `careful`: how many are chosen with care; `turn`: whose turn it is, and who was refused.
 fn chosen(
     a_move: &Move,
     end: f64,
@@ -146,6 +166,7 @@ fn chosen(
     careful: usize,
     fewest: &Fewest,
     encoding: Encoding,
+    (turn, refused): (usize, &Refused),
 ) -> Result<Chosen, Unkept> {
     let coded = encoding == Encoding::Normalized16;
     let reserve = if coded { reserve(encoding, widest(a_move, fewest)) } else { 0.0 };
@@ -160,12 +181,17 @@ fn chosen(
     let cubic = fewest.cubic;
     let chosen = match a_move {
         Move::Keys(motion) if motion.is_step() => return Ok(held(motion, encoding)),
-        Move::Keys(motion) => rotation(&Turning::new(motion.clone()), &options, cubic, coding),
+        Move::Keys(motion) => {
+            let curve = Turning::new(motion.clone());
+            rotation(&InTurn { curve, turn, refused }, &options, cubic, coding)
+        }
         Move::Attitude(Turn { at, knots, ramps }) => {
-            rotation(&Attitude::new(at, (0.0, end), knots, ramps), &options, cubic, coding)
+            let curve = Attitude::new(at, (0.0, end), knots, ramps);
+            rotation(&InTurn { curve, turn, refused }, &options, cubic, coding)
         }
         Move::Travel(travel) => {
-            place(&Travelling::new(travel.as_ref(), (0.0, end), travel.jumps()), &options, cubic)
+            let curve = Travelling::new(travel.as_ref(), (0.0, end), travel.jumps());
+            place(&InTurn { curve, turn, refused }, &options, cubic)
         }
     };
     let travels = matches!(a_move, Move::Travel(_));

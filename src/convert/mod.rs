@@ -11,6 +11,7 @@ mod fewest;
 mod layout;
 mod recipe;
 mod scene;
+mod together;
 
 pub use error::Error;
 pub use facts::{CameraFacts, ClipFacts};

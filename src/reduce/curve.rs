@@ -33,6 +33,10 @@ pub trait Curve: Sync {
     fn first_spin(&self) -> Option<f64> {
         None
     }
+    /// Whether nobody asks for its keys any more: the search for them ends with some refusal.
+    fn is_given_up(&self) -> bool {
+        false
+    }
 }
 
 /// Whether what follows a key is part of a ramp.

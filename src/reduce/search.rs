@@ -38,7 +38,7 @@ pub(super) fn fewest<C: Curve>(
     careful: usize,
 ) -> Result<Vec<Key<C::Value>>, Stuck> {
     let exact = |time: f32| Key::new(time, curve.at(f64::from(time)));
-    let careful = search(curve, stops, limits, exact(stops[0]), careful, || false)?;
+    let careful = search(curve, stops, limits, exact(stops[0]), careful, || curve.is_given_up())?;
     let Found::Some(mut keys) = careful else { return Ok(careful.keys()) };
     let start = keys.pop().unwrap_or(exact(stops[0]));
     let swift = Limits { several: false, ..limits };
@@ -47,7 +47,7 @@ pub(super) fn fewest<C: Curve>(
     let stuck = AtomicUsize::new(usize::MAX);
     let part = |(turn, stops): (usize, &Vec<f32>)| {
         let first = if stops[0] == start.time { start } else { exact(stops[0]) };
-        let in_vain = || stuck.load(Ordering::Relaxed) < turn;
+        let in_vain = || stuck.load(Ordering::Relaxed) < turn || curve.is_given_up();
         let found = search(curve, stops, swift, first, usize::MAX, in_vain).map(Found::keys);
         found.inspect_err(|_| {
             stuck.fetch_min(turn, Ordering::Relaxed);
