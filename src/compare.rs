@@ -6,8 +6,7 @@
 
 mod chord;
 mod keys;
-mod peaks;
-mod quadrature;
+mod samples;
 
 #[cfg(test)]
 mod tests;
@@ -19,11 +18,9 @@ use crate::curve::{Arc, Ends, Motion, NotClosed, Piece, Scheme};
 use crate::math::{Jet, Quat, Vec3};
 use crate::reduce::is_corner;
 use chord::Chord;
-use peaks::Hill;
-use quadrature::{Rule, Stretch};
 use rayon::prelude::*;
+use samples::Samples;
 use serde::Serialize;
-use std::sync::LazyLock;
 
 /// What is known of one motion. Degrees and seconds.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -183,14 +180,8 @@ fn estimated(motion: &Motion, keys: &[Quat], loops: bool) -> Figures {
         if i > 0 && is_corner(&pieces[i - 1], piece) {
             totals.needed.stop();
         }
-        totals.add(i, piece, &chord(piece));
+        totals.add(piece, &chord(piece));
     }
-    let hills = std::mem::take(&mut totals.hills);
-    let on = |i: usize| {
-        let (piece, chord) = (&pieces[i], chord(&pieces[i]));
-        move |u: f64| measures(piece, &chord, u)
-    };
-    peaks::climb(&mut totals.peaks, hills, on, |i, u| time(&pieces[i], u));
     let [speed, acceleration, overshoot, stray] = totals.peaks;
     let [speed_rms, acceleration_rms] = totals.squares.map(|square| (square / totals.seconds).sqrt());
     Figures {
@@ -203,14 +194,10 @@ fn estimated(motion: &Motion, keys: &[Quat], loops: bool) -> Figures {
     }
 }
 
-/// The same for all motions.
-static RULE: LazyLock<Rule> = LazyLock::new(Rule::new);
-
 /// What adds up along a motion.
 struct Totals {
-    /// The largest of all [`measures`], and where they may be larger.
+    /// The largest of all [`measures`].
     peaks: [Peak; 4],
-    hills: Vec<Hill>,
     /// Integrals of the squares of speed and acceleration.
     squares: [f64; 2],
     seconds: f64,
@@ -221,47 +208,19 @@ impl Totals {
     fn new(start: f64) -> Totals {
         let peaks = [Peak { value: 0.0, time: start }; 4];
         let needed = keys::Estimate::default();
-        Totals { peaks, hills: Vec::new(), squares: [0.0; 2], seconds: 0.0, needed }
+        Totals { peaks, squares: [0.0; 2], seconds: 0.0, needed }
     }
 
-    fn add(&mut self, index: usize, piece: &Piece, chord: &Chord) {
-        let Totals { peaks, hills, squares, needed, .. } = self;
-        let rule = &*RULE;
+    fn add(&mut self, piece: &Piece, chord: &Chord) {
         let (measure, seconds) = (|u: f64| measures(piece, chord, u), piece.duration());
-        for stretch in rule.stretches(measure, |stretch| is_resolved(rule, stretch, seconds)) {
-            peaks::raise(peaks, hills, rule, &stretch, (index, |u| time(piece, u)));
-            for (square, [fine, _]) in squares.iter_mut().zip(mean_squares(rule, &stretch)) {
-                *square += seconds * fine;
-            }
-            needed.add(|f| {
-                seconds * rule.integrals(&stretch, |&[speed, acceleration, ..]| f(speed, acceleration))[0]
-            });
+        let samples = Samples::of(measure);
+        samples.raise(&mut self.peaks, measure, |u| time(piece, u));
+        for (which, square) in self.squares.iter_mut().enumerate() {
+            *square += seconds * samples.integral(|values| values[which] * values[which]);
         }
+        self.needed.add(|f| seconds * samples.integral(|&[speed, acceleration, ..]| f(speed, acceleration)));
         self.seconds += seconds;
     }
-}
-
-/// What rules of two orders may differ by, relatively: the finer then knows twice the digits.
-const AGREE: f64 = 1e-10;
-/// What rounding makes of a rotation, and more.
-const ROUNDING: f64 = 1e-9;
-
-/// Whether the integrals of the squares on a stretch are right, for a piece of so many seconds.
-fn is_resolved(rule: &Rule, stretch: &Stretch<4>, seconds: f64) -> bool {
-    let squares = mean_squares(rule, stretch);
-    let rate = 1.0 / seconds;
-    // A steady turn has accelerations too, which cancel.
-    let rounding = [ROUNDING * rate, ROUNDING * (rate * rate + squares[0][0].to_radians())];
-    squares
-        .iter()
-        .zip(rounding)
-        .all(|([fine, coarse], rounding)| (fine - coarse).abs() <= AGREE * fine + rounding * rounding)
-}
-
-/// What a stretch adds to the means of the squares of speed and acceleration on its piece, by
-/// both rules.
-fn mean_squares(rule: &Rule, stretch: &Stretch<4>) -> [[f64; 2]; 2] {
-    std::array::from_fn(|which| rule.integrals(stretch, |values| values[which] * values[which]))
 }
 
 /// The pieces of a motion but for the ramp that stands for a jump: a jump has no speed.
