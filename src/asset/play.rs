@@ -342,8 +342,8 @@ impl Arc {
             let v: [f64; 4] = std::array::from_fn(|i| f(a[i], b[i]));
             dot(v, v).sqrt()
         };
-        let angle = 2.0 * length(|x, y| x - y).atan2(length(|x, y| x + y));
-        Arc { from: a, to: b, angle, sine: angle.sin() }
+        let angle = 2.0 * libm::atan2(length(|x, y| x - y), length(|x, y| x + y));
+        Arc { from: a, to: b, angle, sine: libm::sin(angle) }
     }
 
     /// The rotation a fraction `u` of the way.
@@ -353,7 +353,7 @@ impl Arc {
         let (p, q) = if angle < 1e-8 {
             (1.0 - u, u)
         } else {
-            (((1.0 - u) * angle).sin() / sine, (u * angle).sin() / sine)
+            (libm::sin((1.0 - u) * angle) / sine, libm::sin(u * angle) / sine)
         };
         std::array::from_fn(|i| p * from[i] + q * to[i])
     }

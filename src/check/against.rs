@@ -86,7 +86,7 @@ impl Curve<'_> {
             Curve::Translation(curve) => {
                 let wanted = curve(t);
                 let part = |i: usize| value.get(i).copied().unwrap_or(f64::NAN) - wanted[i];
-                part(0).hypot(part(1)).hypot(part(2))
+                libm::hypot(libm::hypot(part(0), part(1)), part(2))
             }
         }
     }
@@ -246,7 +246,7 @@ fn four(q: &[f64]) -> [f64; 4] {
 /// rotation, zero or not finite, is as far as can be.
 pub fn degrees(a: [f64; 4], b: [f64; 4]) -> f64 {
     let (sine, cosine) = half_angle(a, b);
-    2.0 * sine.atan2(cosine).to_degrees()
+    2.0 * libm::atan2(sine, cosine).to_degrees()
 }
 
 /// The sine and cosine of half the angle of [`degrees`], both times the same number.

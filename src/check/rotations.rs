@@ -66,7 +66,7 @@ pub(super) fn check(
     let mut rotations = Rotations {
         channel,
         tolerance: tolerance(channel.component()),
-        step_cosine: (STEP / 2.0).to_radians().cos(),
+        step_cosine: libm::cos((STEP / 2.0).to_radians()),
         previous: None,
         not_finite: Tally::default(),
         not_unit: Tally::default(),
@@ -139,7 +139,7 @@ impl Rotations<'_> {
     fn far(&mut self, key: usize, t: f32, interval: f64, cosine: f64) {
         let time = f64::from(t);
         let linear = self.channel.interpolation == Interpolation::Linear;
-        let step = 2.0 * cosine.abs().min(1.0).acos().to_degrees();
+        let step = 2.0 * libm::acos(cosine.abs().min(1.0)).to_degrees();
         // At exactly half a turn the sign means nothing.
         if cosine < -1e-6 && self.channel.interpolation != Interpolation::Step {
             self.flips.note(key, time, 0.0);

@@ -347,7 +347,7 @@ fn clip_line(index: usize, clip: &ClipFacts) -> String {
 
 /// Four digits, rounded up: a bound stays one.
 fn rounded(x: f64) -> f64 {
-    let unit = 10f64.powf(x.log10().floor() - 3.0);
+    let unit = libm::pow(10f64, libm::log10(x).floor() - 3.0);
     let up = (x / unit).ceil() * unit;
     format!("{up:.3e}").parse().unwrap_or(up)
 }

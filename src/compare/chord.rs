@@ -41,15 +41,19 @@ impl Chord {
         // Along the great circle of the arc, and across it.
         let along = v.dot(self.axis);
         let across = (v - self.axis * along).length();
-        let turned = 2.0 * along.atan2(w);
-        if (0.0..=self.angle).contains(&turned) { 2.0 * across.atan2(w.hypot(along)) } else { to_nearer_key }
+        let turned = 2.0 * libm::atan2(along, w);
+        if (0.0..=self.angle).contains(&turned) {
+            2.0 * libm::atan2(across, libm::hypot(w, along))
+        } else {
+            to_nearer_key
+        }
     }
 }
 
 /// The angle of rotation from one unit quaternion to another, 0 to 2π: signs count.
 fn angle(a: Quat, b: Quat) -> f64 {
     let relative = a.conjugate() * b;
-    2.0 * relative.v.length().atan2(relative.w)
+    2.0 * libm::atan2(relative.v.length(), relative.w)
 }
 
 #[cfg(test)]

@@ -204,7 +204,7 @@ pub(super) fn rounded_up(x: f64) -> f64 {
         return x;
     }
     let x = x.max(SMALLEST);
-    let exponent = x.log10().floor() as i32 - 4;
+    let exponent = libm::log10(x).floor() as i32 - 4;
     let units = (x / 10f64.powi(exponent)).ceil();
     // Decimal text rounds once more; the nearest number to it may lie below x.
     let decimals = [units, units + 1.0].map(|units| format!("{units}e{exponent}").parse());

@@ -262,7 +262,7 @@ fn cubic_keys<const N: usize>(
 fn reserve(encoding: Encoding, step: f64) -> f64 {
     let half = step.to_radians() / 2.0;
     let pulled = 2.0 * blend::uneven_lengths(half, encoding.lengths());
-    encoding.largest_error() / (half / 2.0).cos() + pulled.to_degrees()
+    encoding.largest_error() / libm::cos(half / 2.0) + pulled.to_degrees()
 }
 
 /// The largest turn from key to key, degrees: over the ramp of a jump it may be any.

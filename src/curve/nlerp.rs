@@ -33,7 +33,7 @@ impl Arc for Chord {
     /// (1−u) start + u end, and end = start cos φ + across sin φ.
     fn at<S: Scalar>(&self, u: S) -> Quat<S> {
         let k = S::constant;
-        let (sin, versine) = (self.angle.sin(), 2.0 * (0.5 * self.angle).sin().powi(2));
+        let (sin, versine) = (libm::sin(self.angle), 2.0 * libm::sin(0.5 * self.angle).powi(2));
         let (x, y) = (k(1.0) - u * k(versine), u * k(sin));
         let length = (x * x + y * y).sqrt();
         let (x, y) = (x / length, y / length);
@@ -45,7 +45,7 @@ impl Arc for Chord {
     /// n = 1 − 4u(1−u)s²: the first is largest half way, the second where
     /// (1−2u)² = cot²(φ/2)/3, or at an end where that lies outside.
     fn rates(&self) -> Rates {
-        let (s, c) = (0.5 * self.angle).sin_cos();
+        let (s, c) = libm::sincos(0.5 * self.angle);
         let sin = 2.0 * s * c;
         let crest = if 3.0 * s * s > c * c { 9.0 / (16.0 * 3f64.sqrt() * s * c.powi(3)) } else { 1.0 };
         Rates { speed: 2.0 * s / c, acceleration: 4.0 * sin * s * s * crest }

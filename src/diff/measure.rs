@@ -63,7 +63,7 @@ impl Measure {
     /// What a gauge stands for, in the measure's unit.
     pub(super) fn of_gauge(self, gauge: f64) -> f64 {
         match self {
-            Measure::LocalRotation | Measure::WorldRotation => 2.0 * gauge.min(1.0).asin().to_degrees(),
+            Measure::LocalRotation | Measure::WorldRotation => 2.0 * libm::asin(gauge.min(1.0)).to_degrees(),
             _ => gauge,
         }
     }

@@ -143,7 +143,7 @@ impl Scalar for Interval {
         if !(self.rad < PI && self.mid.is_finite()) {
             return (Interval::new(-1.0, 1.0), Interval::new(-1.0, 1.0));
         }
-        let ((sin_lo, cos_lo), (sin_hi, cos_hi)) = (self.lo().sin_cos(), self.hi().sin_cos());
+        let ((sin_lo, cos_lo), (sin_hi, cos_hi)) = (libm::sincos(self.lo()), libm::sincos(self.hi()));
         (self.wave([sin_lo, sin_hi], FRAC_PI_2), self.wave([cos_lo, cos_hi], 0.0))
     }
 

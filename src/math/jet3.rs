@@ -89,7 +89,7 @@ impl Scalar for Jet3 {
     }
 
     fn sin_cos(self) -> (Jet3, Jet3) {
-        let (sin, cos) = self.0[0].sin_cos();
+        let (sin, cos) = libm::sincos(self.0[0]);
         (self.chain([sin, cos, -sin, -cos]), self.chain([cos, -sin, -cos, sin]))
     }
 

@@ -4,6 +4,7 @@
 //! (cos θ/2, n sin θ/2); its logarithm is the vector n θ/2, half the rotation
 //! vector. Source: Shoemake 1985; docs/math/rotation.md.
 
+use super::scalar::norm;
 use super::{Scalar, Vec3};
 use std::ops::{Mul, Neg};
 
@@ -45,7 +46,7 @@ impl Quat {
 
     /// Norm; does not overflow or underflow before the norm itself does.
     pub fn norm(self) -> f64 {
-        self.w.hypot(self.v.length())
+        norm([self.w, self.v.x, self.v.y, self.v.z])
     }
 
     /// The logarithm of a unit quaternion: n θ/2 with θ/2 in [0, π].
@@ -58,7 +59,7 @@ impl Quat {
         if sine == 0.0 {
             return Vec3::ZERO;
         }
-        let angle = sine.atan2(self.w);
+        let angle = libm::atan2(sine, self.w);
         let ratio = angle / sine;
         // Beside −1 the ratio of half a turn to almost nothing is no number, though the axis is.
         if ratio.is_finite() {
@@ -72,7 +73,7 @@ impl Quat {
     /// not matter. Accurate for tiny angles, where an arc cosine is not.
     pub fn angle_to(self, other: Quat) -> f64 {
         let relative = self.conjugate() * other;
-        2.0 * relative.v.length().atan2(relative.w.abs())
+        2.0 * libm::atan2(relative.v.length(), relative.w.abs())
     }
 
     /// `self` or −`self` (the same rotation), whichever lies in `before`'s hemisphere.

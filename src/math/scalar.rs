@@ -45,19 +45,19 @@ impl Scalar for f64 {
     }
 
     fn sin_cos(self) -> (Self, Self) {
-        f64::sin_cos(self)
+        libm::sincos(self)
     }
 
     fn cos_sinc_of_square(self) -> (Self, Self) {
         let x = self.sqrt();
-        let (sin, cos) = x.sin_cos();
+        let (sin, cos) = libm::sincos(x);
         // Below 1e-8 the quotient's limit is exact to the last bit.
         (cos, if x < 1e-8 { 1.0 } else { sin / x })
     }
 
     fn angle_over_sine(self, sine_squared: Self) -> Self {
         let sine = sine_squared.sqrt();
-        if sine == 0.0 { 1.0 } else { sine.atan2(self) / sine }
+        if sine == 0.0 { 1.0 } else { libm::atan2(sine, self) / sine }
     }
 }
 
@@ -88,7 +88,11 @@ impl Number for f64 {
     fn polar(q: Quat) -> (f64, Vec3) {
         let sine = q.v.length();
         // The inverse of a smaller number may be infinite.
-        if sine < f64::MIN_POSITIVE { (0.0, Vec3::ZERO) } else { (sine.atan2(q.w), q.v * (1.0 / sine)) }
+        if sine < f64::MIN_POSITIVE {
+            (0.0, Vec3::ZERO)
+        } else {
+            (libm::atan2(sine, q.w), q.v * (1.0 / sine))
+        }
     }
 
     fn length(v: Vec3) -> f64 {
@@ -104,9 +108,42 @@ impl Number for f64 {
     }
 }
 
+/// The length of a vector of any number of components, to a few units in the last place; it does
+/// not overflow or underflow before the length itself does.
+pub(super) fn norm<const N: usize>(components: [f64; N]) -> f64 {
+    let square: f64 = components.iter().map(|x| x * x).sum();
+    // What underflows beside such a sum is below its last digit.
+    if (1e-280..1e280).contains(&square) {
+        square.sqrt()
+    } else {
+        components.into_iter().fold(0.0, libm::hypot)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn norm_is_the_length_at_every_scale(v in prop::array::uniform4(-1.0..1.0f64), exponent in -300..300i32) {
+            let scale = 2f64.powi(exponent);
+            let exact = v.iter().copied().fold(0.0, f64::hypot) * scale;
+            let ours = norm(v.map(|x| x * scale));
+            prop_assert!((ours - exact).abs() <= 1e-15 * exact, "{ours} {exact}");
+        }
+    }
+
+    #[test]
+    fn norm_at_the_ends_of_the_range() {
+        assert_eq!(norm([0.0; 3]), 0.0);
+        assert_eq!(norm([5e-324, 0.0, 0.0]), 5e-324);
+        assert_eq!(norm([0.0, f64::MAX, 0.0]), f64::MAX);
+        assert_eq!(norm([3e-200, 0.0, 4e-200]), 5e-200);
+        assert_eq!(norm([f64::INFINITY, 0.0]), f64::INFINITY);
+        assert!(norm([f64::NAN, 1.0]).is_nan());
+    }
 
     #[test]
     fn cos_sinc_is_continuous_where_the_branch_is() {

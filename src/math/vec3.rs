@@ -1,6 +1,7 @@
 //! Vectors of three scalars: axes, rotation vectors, angular velocities.
 
 use super::Scalar;
+use super::scalar::norm;
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// A vector in three dimensions.
@@ -18,11 +19,7 @@ impl Vec3 {
 
     /// Length; does not overflow or underflow before the length itself does.
     pub fn length(self) -> f64 {
-        let square = self.dot(self);
-        if square > 1e-280 && square < 1e280 {
-            return square.sqrt();
-        }
-        self.x.hypot(self.y).hypot(self.z)
+        norm([self.x, self.y, self.z])
     }
 }
 

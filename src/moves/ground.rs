@@ -290,7 +290,7 @@ impl<'a> Ground<'a> {
             Mover::Track(track) => boxes - track,
         };
         // All boxes in a line, and the corner of the last one's square end.
-        (below - 1) as f64 * length + length.hypot(std::f64::consts::FRAC_1_SQRT_2)
+        (below - 1) as f64 * length + libm::hypot(length, std::f64::consts::FRAC_1_SQRT_2)
     }
 
     /// The same of all points by which paths are shaped, cameras' too, and the origin.

@@ -15,7 +15,7 @@ pub fn axis_angle(q: Quat) -> (DVec3, f64) {
         return (DVec3::X, 0.0);
     }
     let axis = DVec3::new(q.v.x / sine, q.v.y / sine, q.v.z / sine);
-    (axis, (2.0 * sine.atan2(q.w)).to_degrees())
+    (axis, (2.0 * libm::atan2(sine, q.w)).to_degrees())
 }
 
 #[cfg(test)]

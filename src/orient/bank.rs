@@ -95,7 +95,7 @@ fn smoothed(cells: &[f64], step: f64, closed: bool) -> Vec<f64> {
     let count = cells.len() as i64;
     let variance = (SIGMA * SIGMA - step * step * (1.0 / 3.0 + 1.0 / 12.0)).max(0.25 * SIGMA * SIGMA);
     let reach = ((5.0 * SIGMA / step).ceil() as i64).min(2 * count);
-    let weight = |k: i64| (-(k as f64 * step).powi(2) / (2.0 * variance)).exp();
+    let weight = |k: i64| libm::exp(-(k as f64 * step).powi(2) / (2.0 * variance));
     let kernel: Vec<f64> = (-reach..=reach).map(weight).collect();
     let mean = |j: i64| {
         let (mut sum, mut total) = (0.0, 0.0);

@@ -36,9 +36,9 @@ impl Euler {
     /// digits anywhere. docs/math/orientation.md.
     pub fn from_rotation(q: Quat) -> Euler {
         let [w, x, y, z] = q.to_wxyz();
-        let (above, below) = ((w + y).hypot(z - x), (w - y).hypot(z + x));
-        let pitch = 2.0 * above.atan2(below) - FRAC_PI_2;
-        let (difference, sum) = ((z - x).atan2(w + y), (z + x).atan2(w - y));
+        let (above, below) = (libm::hypot(w + y, z - x), libm::hypot(w - y, z + x));
+        let pitch = 2.0 * libm::atan2(above, below) - FRAC_PI_2;
+        let (difference, sum) = (libm::atan2(z - x, w + y), libm::atan2(z + x, w - y));
         let (roll, yaw) = if below < POLE {
             (0.0, 2.0 * difference)
         } else if above < POLE {

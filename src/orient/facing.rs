@@ -32,7 +32,7 @@ impl Facing {
     /// Along a unit vector, with up as near to +Y as it can be. Straight up or down
     /// it is what pitching from +Z makes of it: −Z on the way up, +Z on the way down.
     pub(super) fn upright(forward: DVec3) -> Facing {
-        let up = if forward.x.hypot(forward.z) < PLUMB { DVec3::Z * -forward.y } else { DVec3::Y };
+        let up = if libm::hypot(forward.x, forward.z) < PLUMB { DVec3::Z * -forward.y } else { DVec3::Y };
         Facing::new(forward, up)
     }
 
@@ -59,13 +59,13 @@ impl Facing {
 
     /// Turned about forward, radians, right-handed: the left side goes up.
     pub(super) fn rolled(self, angle: f64) -> Facing {
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = libm::sincos(angle);
         Facing::new(self.forward, self.up * cos - self.left() * sin)
     }
 
     /// The roll that brings up to another up that is at a right angle to forward.
     pub(super) fn roll_to(self, up: DVec3) -> f64 {
-        (-self.left().dot(up)).atan2(self.up.dot(up))
+        libm::atan2(-self.left().dot(up), self.up.dot(up))
     }
 
     /// The roll that brings up as near to +Y as it can be.
@@ -81,7 +81,7 @@ impl Facing {
 
 /// Angle between a unit vector and the vertical, up or down, radians, 0 to π/2.
 pub(super) fn tilt(forward: DVec3) -> f64 {
-    forward.x.hypot(forward.z).atan2(forward.y.abs())
+    libm::atan2(libm::hypot(forward.x, forward.z), forward.y.abs())
 }
 
 /// A vector turned by a rotation.

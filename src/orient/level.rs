@@ -22,7 +22,7 @@ pub struct Level {
 
 /// Heading of a direction, radians from +Z towards +X.
 fn heading(forward: DVec3) -> f64 {
-    forward.x.atan2(forward.z)
+    libm::atan2(forward.x, forward.z)
 }
 
 /// The level rotation of a heading.

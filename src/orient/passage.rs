@@ -19,7 +19,7 @@ pub(super) struct Passage {
 /// All passages nearer to the vertical than `limit`, radians, in order. On a closed
 /// course the first and the last may be one, across the seam: see [`meet_at_seam`].
 pub(super) fn passages(steps: &Steps, limit: f64) -> Vec<Passage> {
-    let cone = Cone { angle: limit, sine: limit.sin() };
+    let cone = Cone { angle: limit, sine: libm::sin(limit) };
     let mut found: Vec<Passage> = Vec::new();
     let end = f64::INFINITY;
     let start = steps.start(0);

@@ -105,6 +105,6 @@ impl Steeped {
 /// The direction of (1 − w) + w e^{iφ}: from 0 to φ with the weight, by the mean of the
 /// two ups rather than of the angles, so that whole turns of φ do not count.
 fn blend(angle: f64, weight: f64) -> f64 {
-    let (sin, cos) = angle.sin_cos();
-    (weight * sin).atan2(1.0 - weight + weight * cos)
+    let (sin, cos) = libm::sincos(angle);
+    libm::atan2(weight * sin, 1.0 - weight + weight * cos)
 }

@@ -286,7 +286,7 @@ fn unit(points: &[DVec3]) -> Result<f64, Error> {
         return Err(Error::Coordinate { point });
     }
     let largest = points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
-    let exponent = if largest > 0.0 { largest.log2().floor().clamp(-1074.0, 1000.0) as i32 } else { 0 };
+    let exponent = if largest > 0.0 { libm::log2(largest).floor().clamp(-1074.0, 1000.0) as i32 } else { 0 };
     // In two factors: the smallest powers have no reciprocal.
     let half = exponent / 2;
     Ok(2f64.powi(half) * 2f64.powi(exponent - half))

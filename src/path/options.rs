@@ -181,8 +181,8 @@ impl Ease {
 /// The x in 0..=1 with 3x² − 2x³ = y: 2 cos(π/6 − φ/3) sin(φ/3) where sin²φ = y, the
 /// cubic's trigonometric solution ½ − sin(arcsin(1 − 2y)/3) without its cancellation.
 fn inverse_smoothstep(y: f64) -> f64 {
-    let third = y.sqrt().atan2((1.0 - y).max(0.0).sqrt()) / 3.0;
-    2.0 * (std::f64::consts::FRAC_PI_6 - third).cos() * third.sin()
+    let third = libm::atan2(y.sqrt(), (1.0 - y).max(0.0).sqrt()) / 3.0;
+    2.0 * libm::cos(std::f64::consts::FRAC_PI_6 - third) * libm::sin(third)
 }
 
 /// Everything about a path but its kind and its points.

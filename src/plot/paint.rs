@@ -222,7 +222,7 @@ fn apart(mut line: Line) -> Line {
         let end = stretch.last().copied();
         let mut before: Option<Point> = None;
         stretch.retain(|p| {
-            let near = |b: Point| (p[0] - b[0]).hypot(p[1] - b[1]) < SEEN;
+            let near = |b: Point| libm::hypot(p[0] - b[0], p[1] - b[1]) < SEEN;
             let keep = before.is_none_or(|b| !near(b));
             if keep {
                 before = Some(*p);

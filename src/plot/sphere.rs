@@ -219,23 +219,23 @@ fn globe(view: &View) -> Vec<Layer> {
     let step = 30f64.to_radians();
     let angles = || (0..=120).map(|i| f64::from(i) / 120.0 * std::f64::consts::TAU);
     let meridian = |k: i32| {
-        let (sin, cos) = (f64::from(k) * step).sin_cos();
-        view.halves(angles().map(move |a| DVec3::new(a.cos() * cos, a.sin(), a.cos() * sin)))
+        let (sin, cos) = libm::sincos(f64::from(k) * step);
+        view.halves(angles().map(move |a| DVec3::new(libm::cos(a) * cos, libm::sin(a), libm::cos(a) * sin)))
     };
     let parallel = |k: i32| {
-        let (sin, cos) = (f64::from(k) * step).sin_cos();
-        view.halves(angles().map(move |a| DVec3::new(cos * a.cos(), sin, cos * a.sin())))
+        let (sin, cos) = libm::sincos(f64::from(k) * step);
+        view.halves(angles().map(move |a| DVec3::new(cos * libm::cos(a), sin, cos * libm::sin(a))))
     };
     let circles: Vec<[Line; 2]> = (0..6).map(meridian).chain((-2..=2).map(parallel)).collect();
     let mut layers = Vec::new();
     layers.extend(circles.iter().map(|[_, back]| Layer::Trace(back.clone(), grid.faint())));
     layers.extend(circles.iter().map(|[front, _]| Layer::Trace(front.clone(), grid)));
-    let rim = angles().map(|a| [a.cos(), a.sin()]).collect();
+    let rim = angles().map(|a| [libm::cos(a), libm::sin(a)]).collect();
     layers.push(Layer::Trace(vec![rim], Stroke::solid(Ink::Quiet, 1.1)));
     for (axis, name) in [(DVec3::X, "x"), (DVec3::Y, "y"), (DVec3::Z, "z")] {
         for (sign, shown) in [(1.0, format!("+{name}")), (-1.0, format!("−{name}"))] {
             let [x, y] = view.place(sign * axis);
-            let length = x.hypot(y);
+            let length = libm::hypot(x, y);
             // Names of what points to the eye or away would lie over the traces.
             if length > 0.7 {
                 let stroke =

@@ -34,7 +34,7 @@ impl Numbers {
             None if value == 0.0 => "0".to_owned(),
             None => {
                 // Two digits more than tell neighbours apart, lest they be rounded.
-                let digits = (value.abs() / self.step).log10().ceil().clamp(0.0, 14.0) as usize + 2;
+                let digits = libm::log10(value.abs() / self.step).ceil().clamp(0.0, 14.0) as usize + 2;
                 let text = format!("{value:.digits$e}");
                 let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
                 let mantissa = mantissa.trim_end_matches('0').trim_end_matches('.');

@@ -175,7 +175,7 @@ impl<'a, C: Curve> Ahead<'a, C> {
     /// they are multiples of a spacing of which there are two to an octave.
     fn sample(&mut self, spacing: f64) -> Option<f64> {
         self.samples.clear();
-        let mut h = (0.5 * (2.0 * spacing.log2()).floor()).exp2();
+        let mut h = libm::exp2(0.5 * (2.0 * libm::log2(spacing)).floor());
         let knots = self.curve.curve.knots();
         let mut knots = knots[knots.partition_point(|&knot| knot <= self.start)..].iter().peekable();
         let (stop, mut t) = (f64::from(self.stop.0), self.start);

@@ -52,7 +52,7 @@ impl Camera {
         let fit = |(x, y): (f64, f64)| if picture >= x / y { (y * picture, y) } else { (x, x / picture) };
         let (lens, distance) = match self.projection {
             Projection::Perspective { yfov, aspect, near, far } => {
-                let up = (yfov / 2.0).tan();
+                let up = libm::tan(yfov / 2.0);
                 let tan = fit((up * aspect.unwrap_or(picture), up));
                 (Lens::Perspective { tan, near, far }, near)
             }

@@ -145,7 +145,7 @@ impl Session {
 /// camera are.
 fn meet(a: Option<(f64, f64)>, b: Option<(f64, f64)>) -> bool {
     match (a, b) {
-        (Some(a), Some(b)) => (a.0 - b.0).hypot(a.1 - b.1) < MEETING,
+        (Some(a), Some(b)) => libm::hypot(a.0 - b.0, a.1 - b.1) < MEETING,
         (a, b) => a == b,
     }
 }

@@ -97,7 +97,7 @@ fn seen([r, g, b, alpha]: [f32; 4], on_light: bool) -> [f32; 4] {
 
 /// The nearest of 1, 2, 5 and 10 times a power of ten from below.
 fn easily_said(length: f64) -> f64 {
-    let power = 10_f64.powf(length.log10().floor());
+    let power = libm::pow(10_f64, libm::log10(length).floor());
     let digit = [5.0, 2.0].into_iter().find(|digit| digit * power <= length);
     digit.unwrap_or(1.0) * power
 }

@@ -99,9 +99,9 @@ impl View {
 fn rim(centre: DVec3, radius: f64) -> impl Iterator<Item = DVec3> {
     const CORNERS: u32 = 64;
     let step = std::f64::consts::TAU / f64::from(CORNERS);
-    let around = radius / (step / 2.0).cos();
+    let around = radius / libm::cos(step / 2.0);
     (0..CORNERS).map(move |i| {
-        let (sin, cos) = (f64::from(i) * step).sin_cos();
+        let (sin, cos) = libm::sincos(f64::from(i) * step);
         centre + DVec3::new(sin, 0.0, cos) * around
     })
 }

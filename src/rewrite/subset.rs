@@ -102,7 +102,7 @@ fn bulge(track: &Track, key: usize) -> f64 {
     let tangents = (0..track.width).filter_map(|c| track.tangents(key, c));
     let reach = tangents.map(|(out, into)| h / 3.0 * (out.abs() + into.abs())).map(|d| d * d).sum::<f64>();
     match track.property {
-        Property::Rotation => (2.0 * (1.2 * reach.sqrt()).min(1.0).asin()).to_degrees(),
+        Property::Rotation => (2.0 * libm::asin((1.2 * reach.sqrt()).min(1.0))).to_degrees(),
         _ => reach.sqrt(),
     }
 }
@@ -287,7 +287,7 @@ fn difference(track: &Track, (from, to): (usize, usize), key: usize, c: usize) -
 fn angle(track: &Track, key: usize, difference: f64) -> Option<f64> {
     let least = least_length(&cubic(track, key));
     let sine = difference / least;
-    (least > 0.0 && sine < 1.0).then(|| (2.0 * sine.asin()).to_degrees())
+    (least > 0.0 && sine < 1.0).then(|| (2.0 * libm::asin(sine)).to_degrees())
 }
 
 #[cfg(test)]

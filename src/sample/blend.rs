@@ -52,7 +52,7 @@ pub(crate) fn lengths(written: &[[f32; 4]]) -> f64 {
 /// towards it, by at most the difference of their lengths times sin uφ sin (1−u)φ / sin φ if it is one
 /// of sines, or u(1−u) sin φ / D by `nlerp`: of either the half way is the most, tan(φ/2) / 2.
 pub(crate) fn uneven_lengths(turn: f64, lengths: f64) -> f64 {
-    0.5 * lengths * (0.5 * turn).tan()
+    0.5 * lengths * libm::tan(0.5 * turn)
 }
 
 /// Below this turn the drift is taken for a cube: digits would cancel.
@@ -82,17 +82,17 @@ pub(crate) fn drift_bound(turn: f64) -> f64 {
 }
 
 fn larger_drift(turn: f64) -> f64 {
-    let (sin, cos) = turn.sin_cos();
+    let (sin, cos) = libm::sincos(turn);
     let product = (1.0 - sin / turn) / (2.0 * (1.0 - cos));
     let u = 0.5 * (1.0 - (1.0 - 4.0 * product).max(0.0).sqrt());
-    let drift = (u * turn - (u * sin).atan2(1.0 - u + u * cos)).abs();
+    let drift = (u * turn - libm::atan2(u * sin, 1.0 - u + u * cos)).abs();
     // Rounding is 1e-16 of the turn.
     drift + 1e-15 * turn
 }
 
 /// Largest speed and acceleration of `nlerp` from u = a to u = b, by u, as half angles.
 pub(crate) fn rates(turn: f64, a: f64, b: f64) -> Rates {
-    let (sin, cos) = turn.sin_cos();
+    let (sin, cos) = libm::sincos(turn);
     let square = |u: f64| 1.0 - 2.0 * u * (1.0 - u) * (1.0 - cos);
     let least = square(0.5f64.clamp(a.min(b), a.max(b)));
     let off_centre = (1.0 - 2.0 * a).abs().max((1.0 - 2.0 * b).abs());

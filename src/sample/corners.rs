@@ -164,7 +164,7 @@ impl Chain<'_> {
 
     /// How far a box's corners are from its hinge at most.
     fn corner(&self) -> f64 {
-        self.length.hypot(FRAC_1_SQRT_2)
+        libm::hypot(self.length, FRAC_1_SQRT_2)
     }
 
     fn stretch(&self, cursor: &mut Cursor, from: f64, to: f64) -> Stretch<'_> {

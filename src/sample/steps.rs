@@ -36,12 +36,12 @@ impl Steps {
                 .filter(|(t, _)| within(t))
                 .for_each(|(_, square)| *square = 0.0);
         }
-        let large = (0.5 * Steps::LARGE).to_radians().tan().powi(2);
+        let large = libm::tan((0.5 * Steps::LARGE).to_radians()).powi(2);
         let largest = squares.iter().copied().fold(0.0, f64::max);
         let at = squares.iter().position(|&square| square == largest).map_or(0.0, |i| f64::from(times[i]));
         Steps {
             large: squares.iter().filter(|&&square| square > large).count(),
-            worst: (2.0 * largest.sqrt().atan()).to_degrees(),
+            worst: (2.0 * libm::atan(largest.sqrt())).to_degrees(),
             at: if largest > 0.0 { at } else { 0.0 },
         }
     }

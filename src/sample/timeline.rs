@@ -199,7 +199,7 @@ fn check(keys: &[f64], fps: Fps, key_times: bool) -> Result<(), TooFine> {
     }
     // From 2ᵉ on float32 numbers are 2ᵉ⁻²³ apart: frames fall together from the first
     // power of two where that exceeds their interval.
-    let time = 2f64.powi(24 + interval.log2().floor() as i32);
+    let time = 2f64.powi(24 + libm::log2(interval).floor() as i32);
     let largest_fps = Fps::at_most(1.0 / spacing_below(last as f32)).expect("LONGEST leaves a rate");
     Err(TooFine::Frames { time: time.min(last), interval, largest_fps })
 }

@@ -114,7 +114,7 @@ pub(crate) fn helix(x: f64) -> [u8; 3] {
     let lightness = 0.25 + 0.5 * x.clamp(0.0, 1.0);
     let angle = std::f64::consts::TAU * (0.5 / 3.0 + 1.0 - 0.9 * x);
     let amplitude = 0.5 * 1.4 * lightness * (1.0 - lightness);
-    let (sin, cos) = angle.sin_cos();
+    let (sin, cos) = libm::sincos(angle);
     let weights = [[-0.14861, 1.78277], [-0.29227, -0.90649], [1.97294, 0.0]];
     let level = |[c, s]: [f64; 2]| (lightness + amplitude * (c * cos + s * sin)).clamp(0.0, 1.0);
     weights.map(|weight| (255.0 * level(weight)).round() as u8)

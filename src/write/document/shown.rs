@@ -144,7 +144,7 @@ fn material(material: &Material) -> json::Material {
 /// A level as screens show it (sRGB, IEC 61966-2-1) as a share of light, to 4 digits.
 pub(in crate::write) fn linear(level: u8) -> f32 {
     let c = f64::from(level) / 255.0;
-    let light = if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) };
+    let light = if c <= 0.04045 { c / 12.92 } else { libm::pow((c + 0.055) / 1.055, 2.4) };
     ((light * 1e4).round() / 1e4) as f32
 }
 
