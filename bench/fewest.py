@@ -1,6 +1,6 @@
 """How many keys this program and other optimisers need for the same error.
 
-    cargo build --release && python3 bench/fewest.py
+    cargo build --profile dist && python3 bench/fewest.py
 
 Two clips of four boxes with 25 keys over 20 s, steps up to 150 degrees, keys even and uneven
 in time. dat2glb makes its file from the keys. The others get an export at 480 frames a second
@@ -19,7 +19,7 @@ import subprocess
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-TOOL = ROOT / "target/release/dat2glb"
+TOOL = ROOT / "target/dist/dat2glb"
 PEERS = ["@gltf-transform/cli@4.5.1", "gltfpack@1.3.0"]
 TOLERANCES = [0.1, 0.01, 0.001]
 

@@ -1,6 +1,6 @@
 """How cost grows: seconds and memory of `dat2glb convert` over keys and over boxes, as a plot.
 
-    cargo build --release --bins --examples && python3 bench/run.py && python3 bench/growth.py
+    cargo build --profile dist --bins --examples && python3 bench/run.py && python3 bench/growth.py
 
 One box with 10^2 to 10^7 keys, and 2,000 keys of 1 to 500 boxes, by slerp and by bessel with
 the proven bound, a sample a key. Draws docs/images/growth.png with matplotlib from the

@@ -3,7 +3,7 @@
     python3 bench/run.py            # prints the table
     python3 bench/run.py --write    # also puts it into docs/performance.md
 
-Builds the release, makes a clip of 1,000,000 rows of 4 boxes, installs the others into .tools
+Builds the profile `dist`, makes a clip of 1,000,000 rows of 4 boxes, installs the others into .tools
 (PyPI: polars, scipy, f3d; npm: gltf-transform, gltfpack, the Khronos validator) and runs every
 comparison in turns, so that a slow moment of the machine meets both sides. Figures are medians;
 only ratios carry over to another machine. Output files are new ones each time.
@@ -24,8 +24,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 PEERS = ROOT / ".tools/peers"
 PYTHON = PEERS / "python/bin/python"
 NODE = PEERS / "npm/node_modules"
-TOOL = ROOT / "target/release/dat2glb"
-EXAMPLES = ROOT / "target/release/examples"
+TOOL = ROOT / "target/dist/dat2glb"
+EXAMPLES = ROOT / "target/dist/examples"
 PYPI = ["polars==2.1.0", "scipy==1.17.1", "numpy==2.4.6", "f3d==4.0.0", "matplotlib"]
 NPM = ["@gltf-transform/cli@4.5.1", "gltfpack@1.3.0", "gltf-validator@2.0.0-dev.3.10"]
 ROWS = 1_000_000
@@ -38,7 +38,7 @@ def install():
         subprocess.run([sys.executable, "-m", "venv", PEERS / "python"], check=True)
     subprocess.run([PYTHON, "-m", "pip", "install", "-q", "--disable-pip-version-check", *PYPI], check=True)
     subprocess.run(["npm", "install", "--prefix", PEERS / "npm", "--no-audit", "--no-fund", "--loglevel=error", *NPM], check=True)
-    subprocess.run(["cargo", "build", "--release", "--bins", "--examples"], cwd=ROOT, check=True)
+    subprocess.run(["cargo", "build", "--profile", "dist", "--bins", "--examples"], cwd=ROOT, check=True)
 
 
 class Run:
@@ -212,7 +212,7 @@ class Bench:
         self.table.add("convert 26 rows, beyond an empty program", seconds(convert - empty), seconds(empty), 1000 * (convert - empty), "≤ 8 ms", 8, at_least=False)
 
     def curves(self):
-        said = subprocess.run(["cargo", "bench", "--bench", "stages", "--", "curve_at_all"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
+        said = subprocess.run(["cargo", "bench", "--profile", "dist", "--bench", "stages", "--", "curve_at_all"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
         per, scheme = None, None
         for line in said.splitlines():
             if name := re.search(r"[├╰]─ ([a-z0-9-]+)", line):
