@@ -56,20 +56,21 @@ fn the_first_steps_work_when_typed() {
     assert!(folder.path().join("chain.glb").exists());
 }
 
-/// The commands that the README shows work as they stand there, but for the one that
-/// watches.
+/// The commands that the README shows, and the pages of docs that go on from it, work as
+/// they stand there, but for the one that watches.
 #[cfg(all(unix, feature = "render"))]
 #[test]
 fn the_readmes_commands_work_when_typed() {
     use crate::support::tool::{finish, program_path};
-    let readme = fs::read_to_string(crate::support::repository().join("README.md")).unwrap();
+    let page = |name: &str| fs::read_to_string(crate::support::repository().join(name)).unwrap();
+    let pages = ["README.md", "docs/paths.md", "docs/schemes.md", "docs/pictures.md"].map(page).join("\n");
     let folder = tempfile::tempdir().unwrap();
-    let commands = readme.lines().filter_map(|line| line.strip_prefix("dat2glb "));
+    let commands = pages.lines().filter_map(|line| line.strip_prefix("dat2glb "));
     let typed: Vec<&str> = commands
         .map(|command| command.split("  ").next().unwrap())
         .filter(|command| !["--watch", "clip.", "before."].iter().any(|word| command.contains(word)))
         .collect();
-    assert!(typed.len() >= 14, "{typed:?}");
+    assert!(typed.len() >= 28, "{typed:?}");
     for command in typed {
         let mut shell = std::process::Command::new("sh");
         shell.current_dir(&folder).arg("-c").arg(format!("\"$0\" {command}")).arg(program_path());

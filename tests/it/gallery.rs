@@ -15,10 +15,10 @@ const FEW: f64 = 0.005;
 const MUCH: u8 = 24;
 
 const HEAD: &str = "\
-# The book of curves
+# Gallery
 
 What each scheme makes of the same keys: nine, unevenly spaced and up to 150° apart, of two boxes
-([very-uneven.dat](../fixtures/keyframes/very-uneven.dat)). On the left the second number of the rows
+([very-uneven.dat](../fixtures/keyframes/very-uneven.dat)). On the left the second component of the rows
 (box 1's x) with the keys as dots, in the middle how fast box 1 turns, on the right the motion. Lines
 that break in the middle are jumps in speed, which one sees; bends there are jumps in acceleration, which
 one feels. `dat2glb plot YOURS.dat --scheme all` draws the same of your own keys, and
@@ -27,12 +27,12 @@ one feels. `dat2glb plot YOURS.dat --scheme all` draws the same of your own keys
 Made by `DAT2GLB_ACCEPT=1 cargo test --test it gallery`.
 ";
 
-/// The README's row of a scheme: what happens between keys, and when to choose it.
+/// The row of a scheme in docs/schemes.md: what happens between keys, and when to choose it.
 fn words(scheme: Scheme) -> [String; 2] {
-    let readme = fs::read_to_string(repository().join("README.md")).unwrap();
+    let schemes = fs::read_to_string(repository().join("docs/schemes.md")).unwrap();
     let start = format!("| [`{}`]", scheme.name());
-    let row = readme.lines().find(|line| line.starts_with(&start));
-    let row = row.unwrap_or_else(|| panic!("the README has no row for {}", scheme.name()));
+    let row = schemes.lines().find(|line| line.starts_with(&start));
+    let row = row.unwrap_or_else(|| panic!("docs/schemes.md has no row for {}", scheme.name()));
     let cells: Vec<&str> = row.trim_matches('|').split('|').map(str::trim).collect();
     [cells[1].to_owned(), cells[2].to_owned()]
 }
@@ -42,8 +42,9 @@ fn page() -> String {
     for &scheme in Scheme::EVERY {
         let (name, [between, choose]) = (scheme.name(), words(scheme));
         page += &format!(
-            "\n## {name}\n\nBetween keys: {between}. Choose it **{choose}**. [How it works](math/{name}.md).\n\n\
-             | One number | Angular speed | The motion |\n|---|---|---|\n\
+            "\n## {name}\n\nBetween keys: {between}. When to choose it: {choose}. \
+             [How it works](math/{name}.md).\n\n\
+             | One component | Angular speed | The motion |\n|---|---|---|\n\
              | ![{name}: a component over time](gallery/{name}-component.png) \
              | ![{name}: angular speed over time](gallery/{name}-speed.png) \
              | ![{name}: eight moments](gallery/{name}-sheet.png) |\n"
@@ -86,7 +87,7 @@ fn differing(a: &RgbaImage, b: &RgbaImage) -> f64 {
 }
 
 #[test]
-fn the_book_of_curves_is_up_to_date() {
+fn the_gallery_is_up_to_date() {
     const ADVICE: &str = "run DAT2GLB_ACCEPT=1 cargo test --test it gallery, and look at it";
     let (text, pictures) = (repository().join("docs/gallery.md"), repository().join("docs/gallery"));
     if accept() {
