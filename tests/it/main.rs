@@ -33,6 +33,8 @@ mod faults_killed;
 mod fewest;
 #[cfg(all(feature = "cli", feature = "plot", feature = "render"))]
 mod gallery;
+#[cfg(all(feature = "cli", feature = "render", feature = "plot"))]
+mod golden;
 #[cfg(feature = "cli")]
 mod help;
 #[cfg(all(feature = "cli", feature = "render", feature = "plot", target_os = "linux"))]
