@@ -5,7 +5,8 @@
 //! chosen so that the end is met. Source: Kim, Kim and Shin 1995; docs/math/b-spline.md.
 
 use super::arc::direction;
-use super::rule::{End, Rule, Smoothness, Span};
+use super::rule::{Rule, Smoothness};
+use super::span::{End, Span};
 use super::{Arc, Rates};
 use crate::math::{Quat, Scalar, Vec3};
 

@@ -2,7 +2,8 @@
 
 use super::Tcb;
 use super::cumulative::{Corner, CumulativeCubic, Handles};
-use super::rule::{Broad, Rule, Smoothness, Span};
+use super::rule::{Broad, Rule, Smoothness};
+use super::span::Span;
 use crate::math::{Number, Vec3};
 
 /// Bessel's tangents (de Boor 1978) on angular velocities; docs/math/bessel.md.

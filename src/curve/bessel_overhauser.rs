@@ -2,7 +2,8 @@
 
 use super::Tcb;
 use super::cumulative::{Corner, CumulativeCubic, Handles, log_of_product};
-use super::rule::{Broad, Rule, Smoothness, Span};
+use super::rule::{Broad, Rule, Smoothness};
+use super::span::Span;
 use crate::math::{Number, Quat, Vec3};
 
 /// Bessel's tangents as a product of powers; docs/math/bessel-overhauser.md.

@@ -2,7 +2,8 @@
 
 use super::Tcb;
 use super::cumulative::{Corner, CumulativeCubic, Handles, log_of_product};
-use super::rule::{Broad, Rule, Smoothness, Span};
+use super::rule::{Broad, Rule, Smoothness};
+use super::span::Span;
 use crate::math::{Number, Vec3};
 
 /// Catmull and Rom 1974, for rotations in the form of Kim, Kim and Shin 1995;

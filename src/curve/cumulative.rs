@@ -5,7 +5,8 @@
 //! Source: Kim, Kim and Shin, SIGGRAPH 1995; docs/math/cumulative-bezier.md.
 
 use super::arc::{direction, turn};
-use super::rule::{Broad, End, Formula, Neighbour, Paced, Span};
+use super::rule::{Broad, Formula, Paced};
+use super::span::{End, Neighbour, Span};
 use super::{Arc, Rates, Tcb};
 use crate::math::{Number, Quat, Scalar, Vec3};
 

@@ -3,7 +3,8 @@
 use super::Tcb;
 use super::bessel::velocity;
 use super::cumulative::{Corner, CumulativeCubic, Handles};
-use super::rule::{Broad, Rule, Smoothness, Span};
+use super::rule::{Broad, Rule, Smoothness};
+use super::span::Span;
 use crate::math::{Number, Vec3};
 
 /// Kochanek and Bartels 1984 on angular velocities; docs/math/kochanek-bartels.md.

@@ -10,7 +10,8 @@
 //! plain way.
 
 use super::motion::Motion;
-use super::rule::{Broad, End, Formula, Neighbour, Paced, Span};
+use super::rule::{Broad, Formula, Paced};
+use super::span::{End, Neighbour, Span};
 use super::{Arc, Rates, Tcb};
 use crate::math::{Lane, Number, Quat, Vec3, widest};
 use fearless_simd::{Simd, dispatch};

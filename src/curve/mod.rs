@@ -25,6 +25,7 @@ mod rates;
 mod rule;
 mod scheme;
 mod slerp;
+mod span;
 mod squad;
 mod step;
 mod tcb;

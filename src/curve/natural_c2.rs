@@ -9,7 +9,8 @@ mod solve;
 pub(super) use solve::is_solved;
 
 use super::log_rates::BEND;
-use super::rule::{Rule, Smoothness, Span, Velocities};
+use super::rule::{Rule, Smoothness, Velocities};
+use super::span::Span;
 use super::{Arc, Rates};
 use crate::math::{Quat, Scalar, Vec3, stumpff};
 

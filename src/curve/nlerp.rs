@@ -1,7 +1,8 @@
 //! `nlerp`: the straight line between two quaternions, brought back to unit length.
 
 use super::arc::direction;
-use super::rule::{Rule, Smoothness, Span};
+use super::rule::{Rule, Smoothness};
+use super::span::Span;
 use super::{Arc, Rates};
 use crate::math::{Quat, Scalar};
 

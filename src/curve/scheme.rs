@@ -1,7 +1,8 @@
 //! The list of schemes.
 
 use super::lanes::{self, Kernels};
-use super::rule::{Rule, Smoothness, Span, Velocities};
+use super::rule::{Rule, Smoothness, Velocities};
+use super::span::Span;
 use super::{
     Arc, Rates, b_spline, barry_goldman, bessel, bessel_overhauser, catmull_rom, kochanek_bartels,
     natural_c2, nlerp, slerp, squad, step,

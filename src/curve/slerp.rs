@@ -1,7 +1,8 @@
 //! `slerp`: constant speed from key to key, a corner at each.
 
 use super::arc::GreatArc;
-use super::rule::{Broad, Rule, Smoothness, Span};
+use super::rule::{Broad, Rule, Smoothness};
+use super::span::Span;
 use crate::math::Number;
 
 /// Shoemake 1985; docs/math/slerp.md.

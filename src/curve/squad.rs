@@ -2,7 +2,8 @@
 
 use super::arc::GreatArc;
 use super::log_rates::{BEND, stretch};
-use super::rule::{Broad, End, Formula, Neighbour, Paced, Rule, Smoothness, Span};
+use super::rule::{Broad, Formula, Paced, Rule, Smoothness};
+use super::span::{End, Neighbour, Span};
 use super::{Arc, Rates};
 use crate::math::{Number, Quat, Scalar};
 

@@ -1,6 +1,7 @@
 //! `step`: each key holds until the next.
 
-use super::rule::{Rule, Smoothness, Span};
+use super::rule::{Rule, Smoothness};
+use super::span::Span;
 use super::{Arc, Rates};
 use crate::math::{Quat, Scalar};
 

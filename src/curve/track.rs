@@ -1,6 +1,6 @@
 //! A track's keys, and what its ends make of them.
 
-use super::rule::{End, Neighbour, Span};
+use super::span::{End, Neighbour, Span};
 use super::{Ends, Tcb};
 use crate::math::{Quat, Vec3};
 

@@ -1,6 +1,6 @@
 //! Fewer keys for a track of many that are played LINEAR, in one pass over them.
 
-use super::keys::{Allowed, Found};
+use super::found::{Allowed, Found};
 use super::track::{Stored, Track};
 use crate::asset::play::{Interpolation, Property};
 use crate::math::Quat;

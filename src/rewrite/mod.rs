@@ -8,6 +8,7 @@
 mod content;
 mod curves;
 mod file;
+mod found;
 mod json;
 mod keys;
 mod layout;

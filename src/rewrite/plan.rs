@@ -1,7 +1,7 @@
 //! Which tracks change: those that take fewer bytes, and one at least that lasts as long
 //! as its clip.
 
-use super::keys::Found;
+use super::found::Found;
 use super::refs::Fixed;
 use super::track::Sampler;
 use crate::asset::Asset;

@@ -4,7 +4,7 @@
 //! are smooth, so that their distance there follows from what is known at these keys.
 
 use super::curves::{cubic, hermite, least_length, slerp_rates, unit};
-use super::keys::{Allowed, Found};
+use super::found::{Allowed, Found};
 use super::track::Track;
 use crate::asset::play::{Interpolation, Property, slerp};
 

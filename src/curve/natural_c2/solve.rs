@@ -8,7 +8,7 @@
 
 use super::Tangent;
 use crate::curve::Ends;
-use crate::curve::rule::End;
+use crate::curve::span::End;
 use crate::curve::track::Track;
 use crate::math::Vec3;
 use glam::{DMat3, DVec3};

@@ -93,7 +93,7 @@ impl Gpu {
             let Some(part) = stock.nth(batch.part).and_then(Option::as_ref) else {
                 continue;
             };
-            let [first, end] = batch.draws.map(|d| (d * stock::PLACEMENT_BYTES) as u64);
+            let [first, end] = batch.draws.map(|d| (d * pipeline::PLACEMENT_BYTES) as u64);
             pass.set_pipeline(self.pipelines.get(batch.kind));
             pass.set_bind_group(1, &self.stock.textures[part.texture], &[]);
             pass.set_vertex_buffer(0, part.vertices.slice(..));

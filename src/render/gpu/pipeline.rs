@@ -8,6 +8,10 @@ pub(super) const COLOUR: TextureFormat = TextureFormat::Rgba8UnormSrgb;
 pub(super) const DEPTH: TextureFormat = TextureFormat::Depth32Float;
 /// Samples a pixel, where graphics cards by convention put them.
 pub(super) const SAMPLES: u32 = 4;
+/// Position, normal, texture coordinates and colour, 4 bytes a number.
+pub(super) const VERTEX_BYTES: usize = 4 * 12;
+/// Clip matrix, normal matrix with the cutoff in it, colour.
+pub(super) const PLACEMENT_BYTES: usize = 4 * 32;
 
 /// What sets pipelines apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -147,7 +151,7 @@ fn corners() -> wgpu::VertexBufferLayout<'static> {
     const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
         wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x2, 3 => Float32x4];
     wgpu::VertexBufferLayout {
-        array_stride: super::stock::VERTEX_BYTES as u64,
+        array_stride: VERTEX_BYTES as u64,
         step_mode: VertexStepMode::Vertex,
         attributes: &ATTRIBUTES,
     }
@@ -159,7 +163,7 @@ fn placements() -> wgpu::VertexBufferLayout<'static> {
         8 => Float32x4, 9 => Float32x4, 10 => Float32x4, 11 => Float32x4
     ];
     wgpu::VertexBufferLayout {
-        array_stride: super::stock::PLACEMENT_BYTES as u64,
+        array_stride: PLACEMENT_BYTES as u64,
         step_mode: VertexStepMode::Instance,
         attributes: &ATTRIBUTES,
     }

@@ -4,11 +4,6 @@ use super::pipeline::{COLOUR, Pipelines};
 use crate::render::scene::{Alpha, Draw, Level, Material, Part, Texture, Vertex, Wrap};
 use wgpu::util::{BufferInitDescriptor, DeviceExt, TextureDataOrder};
 
-/// Position, normal, texture coordinates and colour, 4 bytes a number.
-pub(super) const VERTEX_BYTES: usize = 4 * 12;
-/// Clip matrix, normal matrix with the cutoff in it, colour.
-pub(super) const PLACEMENT_BYTES: usize = 4 * 32;
-
 /// What stays the same from picture to picture.
 #[derive(Debug)]
 pub(super) struct Stock {
