@@ -371,40 +371,19 @@ impl Block<'_> {
             }
             Content::Appearance => buffer.append(&little_endian(&[[0f32; 3], [1.0; 3]])),
             Content::Rotations { tracks, timeline, of } => {
-                let mut append = |rotations: &[[f32; 4]]| {
+                let append = |rotations: &[[f32; 4]]| {
                     progress(rotations.len() as u64);
                     buffer.append(&rotation_bytes(rotations, writing.encoding))
                 };
-                let facts = match of {
-                    Whose::Ring => rotations_twice(tracks, timeline, writing, &mut append)?,
-                    Whose::Late => {
-                        sample::rotations(tracks, timeline, writing, first_twice(timeline.len(), append))?
-                    }
-                    Whose::Object | Whose::Cameras => sample::rotations(tracks, timeline, writing, append)?,
-                };
-                found.of(*of == Whose::Cameras).tracks = facts;
+                found.of(*of == Whose::Cameras).tracks = rotations(tracks, timeline, *of, writing, append)?;
                 Ok(())
             }
             Content::Travel { travel, timeline, of } => {
-                let mut append = |places: &[[f32; 3]]| {
+                let append = |places: &[[f32; 3]]| {
                     progress(places.len() as u64);
                     buffer.append(&little_endian(places))
                 };
-                if *of == Whose::Ring {
-                    let mut left = timeline.len() - 1;
-                    sample::translations(*travel, timeline, writing.hold, |places| {
-                        append(all_but_last(places, &mut left))
-                    })?;
-                }
-                let distance = match of {
-                    Whose::Late => sample::translations(
-                        *travel,
-                        timeline,
-                        writing.hold,
-                        first_twice(timeline.len(), append),
-                    )?,
-                    _ => sample::translations(*travel, timeline, writing.hold, append)?,
-                };
+                let distance = places(*travel, timeline, *of, writing.hold, append)?;
                 if writing.bound {
                     found.of(*of == Whose::Cameras).distances.push(distance);
                 }
@@ -412,6 +391,39 @@ impl Block<'_> {
             }
         }
     }
+}
+
+/// Samples rotations and hands them on, over and again as what they belong to needs it.
+fn rotations(
+    tracks: &[Rotation],
+    timeline: &Timeline,
+    of: Whose,
+    writing: Writing,
+    mut append: impl FnMut(&[[f32; 4]]) -> io::Result<()>,
+) -> io::Result<Vec<sample::TrackFacts>> {
+    match of {
+        Whose::Ring => rotations_twice(tracks, timeline, writing, &mut append),
+        Whose::Late => sample::rotations(tracks, timeline, writing, first_twice(timeline.len(), append)),
+        Whose::Object | Whose::Cameras => sample::rotations(tracks, timeline, writing, append),
+    }
+}
+
+/// The same of places; returns how far off they are.
+fn places(
+    travel: &dyn Travel,
+    timeline: &Timeline,
+    of: Whose,
+    hold: bool,
+    mut append: impl FnMut(&[[f32; 3]]) -> io::Result<()>,
+) -> io::Result<f64> {
+    if of == Whose::Ring {
+        let mut left = timeline.len() - 1;
+        sample::translations(travel, timeline, hold, |places| append(all_but_last(places, &mut left)))?;
+    }
+    if of == Whose::Late {
+        return sample::translations(travel, timeline, hold, first_twice(timeline.len(), append));
+    }
+    sample::translations(travel, timeline, hold, append)
 }
 
 /// Writes each track without its last sample, then whole, its signs following on.

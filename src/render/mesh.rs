@@ -61,23 +61,19 @@ pub(crate) fn part(
         return Ok(None);
     };
     let positions: Vec<[f32; 3]> = attribute(asset, positions)?;
-    let order = match indices {
-        Some(accessor) => asset.indices(accessor.value())?,
-        None => (0..positions.len() as u32).collect(),
-    };
-    let (triangles, segments) = match (triangles(mode, &order), segments(mode, &order)) {
-        (Some(triangles), _) => (triangles, Vec::new()),
-        (None, Some(segments)) => (Vec::new(), segments),
-        (None, None) => {
-            left.insert(Left::Points);
-            return Ok(None);
-        }
-    };
+    let given = indices.map(|accessor| asset.indices(accessor.value())).transpose()?;
+    let order = given.unwrap_or_else(|| (0..positions.len() as u32).collect());
+    let (triangles, segments) = (triangles(mode, &order), segments(mode, &order));
+    if triangles.is_none() && segments.is_none() {
+        left.insert(Left::Points);
+        return Ok(None);
+    }
     let materials = &asset.root().materials;
     left.extend(material.and_then(|m| materials.get(m.value())).into_iter().flat_map(Left::of));
     let (mut material, uv_set) = textures.material(asset, material.map(|m| m.value()));
     let uv = uvs.get(uv_set).copied().flatten().filter(|_| material.texture.is_some());
-    let mut raw = Raw { vertices: positions.iter().map(|p| plain(*p)).collect(), triangles };
+    let vertices = positions.iter().map(|p| plain(*p)).collect();
+    let mut raw = Raw { vertices, triangles: triangles.unwrap_or_default() };
     let has_normals = match normals {
         Some(accessor) => raw.fill(&attribute(asset, accessor)?, |v, n| v.normal = n),
         None => false,
@@ -88,7 +84,7 @@ pub(crate) fn part(
     if let Some(accessor) = colours {
         raw.fill(&vertex_colours(asset, accessor)?, |v, c| v.colour = c);
     }
-    if !segments.is_empty() {
+    if let Some(segments) = segments.filter(|segments| !segments.is_empty()) {
         raw.thicken(&segments);
         // What has no surface has nothing for lamps to shine on.
         material.unlit = true;
