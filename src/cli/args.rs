@@ -9,9 +9,9 @@ mod flags;
 mod inspect;
 mod keys;
 mod path;
-#[cfg(any(feature = "render", feature = "plot"))]
+#[cfg(any(feature = "render", feature = "plot-png"))]
 mod pixels;
-#[cfg(feature = "plot")]
+#[cfg(feature = "plot-png")]
 mod plot;
 mod reduce;
 mod sample;
@@ -26,7 +26,7 @@ pub(crate) use convert::Convert;
 pub(crate) use diff::Diff;
 pub(crate) use example::{Example, Kind};
 pub(crate) use inspect::Inspect;
-#[cfg(feature = "plot")]
+#[cfg(feature = "plot-png")]
 pub(crate) use plot::Plot;
 pub(crate) use reduce::Reduce;
 pub(crate) use sample::Sample;
@@ -87,7 +87,7 @@ pub(crate) enum Command {
     ///
     /// Quaternions' parts over time, speeds, a path from its sides, where axes point, or how
     /// far a file's playback is off its curve; several schemes in one frame.
-    #[cfg(feature = "plot")]
+    #[cfg(feature = "plot-png")]
     Plot(Plot),
     /// Print a small input to start from
     Example(Example),

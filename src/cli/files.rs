@@ -38,7 +38,7 @@ pub(super) struct Gathered {
     /// In whose axes they are given, where one of them says so or is so by its kind.
     pub(super) frame: Option<Frame>,
     /// In whose axes rows of rotations are, where they are not as their path's.
-    #[cfg_attr(not(feature = "plot"), expect(dead_code))]
+    #[cfg_attr(not(feature = "plot-png"), expect(dead_code))]
     pub(super) rows: Option<Frame>,
     /// Their file names without folders: rotations, then path.
     pub(super) names: Vec<String>,

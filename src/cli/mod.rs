@@ -13,7 +13,7 @@ mod exit;
 mod files;
 mod inspect;
 mod output;
-#[cfg(feature = "plot")]
+#[cfg(feature = "plot-png")]
 mod plot;
 mod progress;
 mod reduce;
@@ -63,7 +63,7 @@ pub(crate) fn run(arguments: Vec<OsString>) -> ExitCode {
         Command::Reduce(options) => reduce::run(&options),
         Command::Sample(options) => sample::run(&options),
         Command::Compare(options) => compare::run(&options),
-        #[cfg(feature = "plot")]
+        #[cfg(feature = "plot-png")]
         Command::Plot(options) => plot::run(&options),
         Command::Example(options) => example::run(&options),
         Command::Completions { shell } => completions(shell),

@@ -9,6 +9,7 @@ mod error;
 mod figure;
 mod layout;
 mod paint;
+#[cfg(feature = "plot-png")]
 mod png;
 mod series;
 mod show;
@@ -25,6 +26,7 @@ pub use components::all_figures;
 pub use deviations::{AskedOfFile, deviations};
 pub use error::Error;
 pub use figure::{Axis, Dot, Entry, Figure, Layer, Panel, Sign};
+#[cfg(feature = "plot-png")]
 pub use png::png;
 pub use show::Show;
 pub use style::{Ink, Rgb, Stroke, Theme};

@@ -12,7 +12,7 @@ const COMMANDS: &[&str] = &[
     "reduce",
     "sample",
     "compare",
-    #[cfg(feature = "plot")]
+    #[cfg(feature = "plot-png")]
     "plot",
     "example",
     "completions",

@@ -23,27 +23,27 @@ mod convert_outputs;
 mod diff;
 #[cfg(feature = "cli")]
 mod example;
-#[cfg(all(feature = "cli", feature = "render", feature = "plot", target_os = "linux"))]
+#[cfg(all(feature = "cli", feature = "render", feature = "plot-png", target_os = "linux"))]
 mod faults;
-#[cfg(all(feature = "cli", feature = "render", feature = "plot", target_os = "linux"))]
+#[cfg(all(feature = "cli", feature = "render", feature = "plot-png", target_os = "linux"))]
 mod faults_inputs;
-#[cfg(all(feature = "cli", feature = "render", feature = "plot", target_os = "linux"))]
+#[cfg(all(feature = "cli", feature = "render", feature = "plot-png", target_os = "linux"))]
 mod faults_killed;
 #[cfg(feature = "cli")]
 mod fewest;
-#[cfg(all(feature = "cli", feature = "plot", feature = "render"))]
+#[cfg(all(feature = "cli", feature = "plot-png", feature = "render"))]
 mod gallery;
-#[cfg(all(feature = "cli", feature = "render", feature = "plot"))]
+#[cfg(all(feature = "cli", feature = "render", feature = "plot-png"))]
 mod golden;
 #[cfg(feature = "cli")]
 mod help;
-#[cfg(all(feature = "cli", feature = "render", feature = "plot", target_os = "linux"))]
+#[cfg(all(feature = "cli", feature = "render", feature = "plot-png", target_os = "linux"))]
 mod hostile;
 #[cfg(feature = "cli")]
 mod inspect;
 #[cfg(feature = "cli")]
 mod interpolation;
-#[cfg(all(feature = "cli", feature = "plot", target_os = "linux"))]
+#[cfg(all(feature = "cli", feature = "plot-png", target_os = "linux"))]
 mod long_inputs;
 #[cfg(all(feature = "cli", feature = "render"))]
 mod moving;
@@ -51,9 +51,9 @@ mod moving;
 mod outdated;
 #[cfg(feature = "cli")]
 mod paths;
-#[cfg(all(feature = "cli", feature = "plot"))]
+#[cfg(all(feature = "cli", feature = "plot-png"))]
 mod plot;
-#[cfg(all(feature = "cli", feature = "plot"))]
+#[cfg(all(feature = "cli", feature = "plot-png"))]
 mod plot_outputs;
 #[cfg(feature = "cli")]
 mod reduce;

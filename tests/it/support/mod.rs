@@ -2,9 +2,9 @@
 
 #[cfg(feature = "cli")]
 pub(crate) mod altered;
-#[cfg(all(feature = "cli", feature = "render", feature = "plot", target_os = "linux"))]
+#[cfg(all(feature = "cli", feature = "render", feature = "plot-png", target_os = "linux"))]
 pub(crate) mod confined;
-#[cfg(all(feature = "cli", feature = "plot"))]
+#[cfg(all(feature = "cli", feature = "plot-png"))]
 pub(crate) mod drawn;
 #[cfg(feature = "cli")]
 pub(crate) mod loaded;
@@ -15,7 +15,7 @@ pub(crate) mod schema;
 pub(crate) mod stage;
 #[cfg(feature = "cli")]
 pub(crate) mod tool;
-#[cfg(all(feature = "cli", feature = "render", feature = "plot", target_os = "linux"))]
+#[cfg(all(feature = "cli", feature = "render", feature = "plot-png", target_os = "linux"))]
 pub(crate) mod writers;
 
 use dat2glb::clip::Clip;
