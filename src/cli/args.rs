@@ -39,7 +39,42 @@ const EXIT_CODES: &str = "\
 Exit codes: 0 done, 1 input refused, 2 usage, 3 output failed its check, 4 environment \
 (a full disk, a missing permission, no graphics adapter).";
 
-/// Turns quaternion keyframes into glTF animations that play right everywhere.
+const CONVERT_EXAMPLES: &str = "\
+Examples:
+  dat2glb convert clip.dat -o clip.glb
+  dat2glb convert clip.dat --path flight.dat --tolerance 0.01 -o flight.glb";
+
+const CHECK_EXAMPLES: &str = "Example:\n  dat2glb check clip.glb --against clip.dat";
+
+const DIFF_EXAMPLES: &str = "Example:\n  dat2glb diff old.glb new.glb --max-error 0.1";
+
+#[cfg(feature = "render")]
+const THUMBNAIL_EXAMPLES: &str = "\
+Examples:
+  dat2glb thumbnail clip.glb -o clip.png --time 50%
+  dat2glb thumbnail clip.glb -o clip.gif --turntable";
+
+const INSPECT_EXAMPLES: &str = "Example:\n  dat2glb inspect clip.dat";
+
+const REDUCE_EXAMPLES: &str = "Example:\n  dat2glb reduce clip.glb -o small.glb --tolerance 0.05";
+
+const SAMPLE_EXAMPLES: &str = "Example:\n  dat2glb sample clip.dat -o clip.csv --fps 60 --as euler";
+
+const COMPARE_EXAMPLES: &str = "Example:\n  dat2glb compare clip.dat --scheme slerp,squad,bessel";
+
+#[cfg(feature = "plot-png")]
+const PLOT_EXAMPLES: &str = "\
+Examples:
+  dat2glb plot clip.dat -o clip.svg --scheme slerp,bessel
+  dat2glb plot clip.glb --show error --against clip.dat -o error.png";
+
+const EXAMPLE_EXAMPLES: &str = "Example:\n  dat2glb example chain > chain.dat";
+
+const COMPLETIONS_EXAMPLES: &str = "Example:\n  dat2glb completions bash > dat2glb.bash";
+
+const MAN_EXAMPLES: &str = "Example:\n  dat2glb man > dat2glb.1";
+
+/// Converts quaternion keyframes to glTF animations that play correctly in every viewer.
 #[derive(Debug, Parser)]
 #[command(name = "dat2glb", version, arg_required_else_help = true, after_help = EXIT_CODES)]
 #[command(
@@ -52,51 +87,63 @@ pub(crate) struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Convert keyframes to an animated .glb or .gltf, and check it by loading it back
+    /// Convert keyframes to an animated .glb or .gltf, then load it back and check it
     ///
     /// `dat2glb IN.dat [OUT.glb]` is short for `dat2glb convert IN.dat [-o OUT.glb]`.
+    #[command(before_help = CONVERT_EXAMPLES)]
     Convert(Convert),
-    /// Check any .glb or .gltf, and compare its motion with its input
+    /// Check a .glb or .gltf, and compare its playback with its input
+    #[command(after_help = CHECK_EXAMPLES)]
     Check(Check),
-    /// Find the largest differences between the motions of two .glb or .gltf files
+    /// Find the largest motion differences between two .glb or .gltf files
     ///
-    /// Clips and nodes are matched by name; those whose names are missing or double by
-    /// their path in the tree, then by their order. Both files are played as the glTF
-    /// specification says, whatever their interpolation; a shorter clip holds its last
-    /// pose. Local motion is a node's relative to its parent, world motion that of its
-    /// axes and its origin. Without limits the differences are told and the exit code is
-    /// 0; above a limit it is 3. What only one file has fails under --strict.
+    /// Clips and nodes are matched by name, unnamed or duplicate nodes by their path, then by
+    /// order. Both files are played back as the glTF specification defines, with any
+    /// interpolation; a shorter clip holds its last pose. Local motion is relative to the
+    /// parent node, world motion is that of the node's axes and origin. Without limits the
+    /// differences are reported and the exit code is 0; above a limit it is 3. Whatever is
+    /// present in only one file fails with --strict.
+    #[command(after_help = DIFF_EXAMPLES)]
     Diff(Diff),
-    /// Draw a .glb or .gltf: at a time, as a contact sheet, as ghosts, or moving
+    /// Render a .glb or .gltf: a frame, a contact sheet, ghosted poses or an animation
     #[cfg(feature = "render")]
+    #[command(after_help = THUMBNAIL_EXAMPLES)]
     Thumbnail(Thumbnail),
-    /// Say what a file holds: keyframes, .glb or .gltf
+    /// Summarize a file: keyframes, .glb or .gltf
+    #[command(after_help = INSPECT_EXAMPLES)]
     Inspect(Inspect),
-    /// Write a .glb or .gltf again with fewer keys, all else in it as it was
+    /// Reduce the keyframes of a .glb or .gltf, leaving everything else unchanged
+    #[command(after_help = REDUCE_EXAMPLES)]
     Reduce(Reduce),
-    /// Write the motion as a table: CSV, a row a time
+    /// Write the motion as CSV, one row per sample
+    #[command(after_help = SAMPLE_EXAMPLES)]
     Sample(Sample),
     /// Compare schemes: speed, smoothness, overshoot, keys needed
     ///
-    /// A row a scheme: the largest and the root-mean-square angular speed and acceleration;
-    /// by how much angular velocity and acceleration jump at a key at most; how far the
-    /// motion goes beyond its keys (overshoot) and off the arc between them (stray), degrees;
-    /// how many keys playback needs to stay within so many degrees of it, and their bytes.
+    /// Prints one row per scheme: max and RMS angular speed and acceleration; max jump of
+    /// angular velocity and acceleration at a key; how far the motion goes beyond its keys
+    /// (overshoot) and off the arc between them (stray), in degrees; the number of keys
+    /// needed for a given playback error, and their size in bytes.
+    #[command(after_help = COMPARE_EXAMPLES)]
     Compare(Compare),
-    /// Draw curves as diagrams: SVG or PNG
+    /// Plot curves as SVG or PNG
     ///
-    /// Quaternions' parts over time, speeds, a path from its sides, where axes point, or how
-    /// far a file's playback is off its curve; several schemes in one frame.
+    /// Quaternion components over time, speeds, a path from several sides, axis directions, or
+    /// the playback error of a file; several schemes in one plot.
     #[cfg(feature = "plot-png")]
+    #[command(after_help = PLOT_EXAMPLES)]
     Plot(Plot),
-    /// Print a small input to start from
+    /// Print a small sample input
+    #[command(after_help = EXAMPLE_EXAMPLES)]
     Example(Example),
-    /// Print a completion script for a shell
+    /// Print a shell completion script
+    #[command(after_help = COMPLETIONS_EXAMPLES)]
     Completions {
-        /// Which shell
+        /// Shell to generate the script for
         shell: clap_complete::Shell,
     },
     /// Print the manual page
+    #[command(after_help = MAN_EXAMPLES)]
     Man,
 }
 

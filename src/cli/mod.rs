@@ -32,11 +32,11 @@ use std::process::ExitCode;
 
 /// Four commands to begin with, for whoever types none.
 const FIRST_STEPS: &str = "\
-dat2glb turns quaternion keyframes into glTF animations. To begin with:
+dat2glb converts quaternion keyframes to glTF animations. To get started:
 
-  dat2glb example chain > chain.dat              a small input to start from
-  dat2glb convert chain.dat -o chain.glb         make an animated .glb of it
-  dat2glb check chain.glb --against chain.dat    does it play as it should?
+  dat2glb example chain > chain.dat              a small sample input
+  dat2glb convert chain.dat -o chain.glb         convert it to an animated .glb
+  dat2glb check chain.glb --against chain.dat    check that it plays correctly
   dat2glb --help                                 everything else
 ";
 

@@ -11,7 +11,7 @@ pub(super) struct Nlerp;
 
 impl Rule for Nlerp {
     const NAME: &'static str = "nlerp";
-    const SUMMARY: &'static str = "slerp's way, but fastest half way: how some programs blend";
+    const SUMMARY: &'static str = "slerp's arc, but fastest in the middle: how Blender interpolates";
     const SMOOTHNESS: Smoothness = Smoothness::Corners;
     const HAS_ENDS: bool = false;
     type Arc = Chord;

@@ -52,14 +52,14 @@ impl Show {
     /// What it is, in a line.
     pub fn summary(self) -> &'static str {
         match self {
-            Show::Components => "quaternions' parts over time, or a path's x, y and z",
+            Show::Components => "quaternion components over time, or x, y and z of a path",
             Show::Speed => "angular speed, or speed along a path",
-            Show::Acceleration => "angular acceleration, or that of a path",
-            Show::Jerk => "angular jerk: how fast the acceleration changes",
+            Show::Acceleration => "angular acceleration, or acceleration along a path",
+            Show::Jerk => "angular jerk: rate of change of acceleration",
             Show::Curvature => "curvature of a path",
-            Show::Path => "a path from three sides and an oblique one",
-            Show::Error => "how far a .glb's playback is off its curve; needs --against",
-            Show::Sphere => "where each box's axis points, on the unit sphere",
+            Show::Path => "a path in three orthographic views and an oblique one",
+            Show::Error => "playback error of a .glb; needs --against",
+            Show::Sphere => "direction of each box's axis on the unit sphere",
         }
     }
 

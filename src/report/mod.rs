@@ -48,9 +48,9 @@ impl Format {
     /// What it is, in a few words.
     pub fn summary(self) -> &'static str {
         match self {
-            Format::Text => "for people",
-            Format::Json => "a JSON object a file, a line each",
-            Format::Github => "annotations of GitHub Actions",
+            Format::Text => "human-readable",
+            Format::Json => "JSON Lines, one object per file",
+            Format::Github => "GitHub Actions annotations",
             Format::Junit => "JUnit XML",
             Format::Sarif => "SARIF 2.1.0",
         }

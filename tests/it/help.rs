@@ -43,6 +43,25 @@ fn help_names_every_command_and_the_exit_codes() {
 }
 
 #[test]
+fn every_command_shows_an_example() {
+    for &command in COMMANDS {
+        for flag in ["-h", "--help"] {
+            let help = run([command, flag]).exits(0).out();
+            assert!(help.contains(&format!("\n  dat2glb {command} ")), "{help}");
+        }
+    }
+}
+
+#[test]
+fn options_of_convert_are_grouped() {
+    let help = run(["convert", "--help"]).exits(0).out();
+    let headings = ["Input", "Curve", "Path", "Sampling", "Cameras", "Copies", "Output", "Checks"];
+    let at: Vec<Option<usize>> =
+        headings.iter().map(|heading| help.find(&format!("\n{heading}:\n"))).collect();
+    assert!(at.iter().all(Option::is_some) && at.is_sorted(), "{at:?} in:\n{help}");
+}
+
+#[test]
 fn completions_know_every_command_and_flag() {
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
         let script = run(["completions", shell]).exits(0).out();

@@ -13,29 +13,28 @@ pub(crate) struct Check {
     /// Files to check: .glb, .gltf
     #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) files: Vec<PathBuf>,
-    /// Warnings fail too
+    /// Treat warnings as errors
     #[arg(long)]
     pub(crate) strict: bool,
-    /// Compare the motion with the curve through the keys of this input; said twice where
-    /// the file was made of keyframes and a path
+    /// Compare playback with the curve through this input's keyframes; repeat for keyframes
+    /// and a path
     #[arg(long, value_name = "IN.dat", value_hint = ValueHint::FilePath)]
     pub(crate) against: Vec<PathBuf>,
-    /// The largest angle, degrees, that playback may be off the curve; without it, what
-    /// convert stored in the file
+    /// Max rotation error of playback, degrees [default: the bound stored in the file]
     #[arg(long, value_name = "DEG", requires = "against", value_parser = degrees)]
     pub(crate) max_error: Option<f64>,
-    /// The largest distance, units, that playback may be off the path
+    /// Max position error of playback, units
     #[arg(long, value_name = "UNITS", requires = "against", value_parser = degrees)]
     pub(crate) max_distance: Option<f64>,
-    /// The scheme of a file that does not say it itself
+    /// Scheme, for files that do not store it
     #[arg(long, value_name = "NAME", requires = "against", value_parser = scheme())]
     pub(crate) scheme: Option<Scheme>,
-    /// The ends of a file that does not say them itself
+    /// End condition, for files that do not store it
     #[arg(long, requires = "against", value_parser = ends())]
     pub(crate) ends: Option<Ends>,
     #[command(flatten)]
     pub(crate) order: OrderFlag,
-    /// Look at pictures too: is anything to be seen, does it move?
+    /// Render frames too: check that something is visible and moves
     #[cfg(feature = "render")]
     #[arg(long)]
     pub(crate) render: bool,

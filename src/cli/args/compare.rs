@@ -11,18 +11,18 @@ pub(crate) struct Compare {
     /// Rotations (.dat); `-` reads standard input
     #[arg(value_name = "IN", value_hint = ValueHint::FilePath)]
     pub(crate) input: PathBuf,
-    /// Which schemes, separated by commas; `all` for every one
+    /// Schemes to compare, comma-separated; `all` for all but step
     #[arg(long, value_name = "NAME[,NAME…]", default_value = "all", value_delimiter = ',', value_parser = schemes())]
     scheme: Vec<Schemes>,
-    /// What the motion does at its ends
+    /// End condition of the rotation curve
     #[arg(long, default_value = "natural", value_parser = ends())]
     pub(crate) ends: Ends,
-    /// One box alone, counted from 1
+    /// Compare only this box, counted from 1
     #[arg(long = "box", value_name = "B", value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) only: Option<u64>,
     #[command(flatten)]
     pub(crate) order: OrderFlag,
-    /// Print it as JSON
+    /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
 }

@@ -15,57 +15,57 @@ pub(crate) struct Convert {
     /// Keyframes or paths (.dat); `-` reads standard input
     #[arg(required = true, value_name = "IN", value_hint = ValueHint::FilePath)]
     pub(crate) inputs: Vec<PathBuf>,
-    /// The file to write, .glb or .gltf (with a .bin beside it); `-` writes a .glb to
-    /// standard output. For several inputs a folder. Without it: next to the input, .glb
-    #[arg(short, long, value_name = "OUT", value_hint = ValueHint::AnyPath)]
-    pub(crate) output: Option<PathBuf>,
-    /// How rotations run from key to key; several, separated by commas, become one clip
-    /// each; `all` for every scheme
-    #[arg(long, value_name = "NAME[,NAME…]", default_value = "bessel", value_delimiter = ',', value_parser = schemes())]
-    scheme: Vec<Schemes>,
-    /// What the motion does at its ends
-    #[arg(long, default_value = "natural", value_parser = ends(), hide_possible_values = false)]
-    pub(crate) ends: Ends,
-    #[command(flatten)]
-    pub(crate) tangents: Tangents,
-    /// Everything so many times as fast
-    #[arg(long, value_name = "F", default_value = "1", allow_negative_numbers = true, value_parser = positive)]
-    pub(crate) time_scale: f64,
-    /// Whose x, y and z the numbers of a path or of Euler angles are; overrides the header
-    #[arg(long, value_parser = frame())]
+    #[command(flatten, next_help_heading = "Input")]
+    pub(crate) order: OrderFlag,
+    /// Coordinate frame of the input: paths and Euler angles (overrides the header)
+    #[arg(long, help_heading = "Input", value_parser = frame())]
     pub(crate) frame: Option<Frame>,
-    /// Convert again whenever an input changes, until interrupted
-    #[arg(long)]
-    pub(crate) watch: bool,
-    /// Write nothing: fail with exit code 3 where an output is not what its inputs and
-    /// options give now, numbers to one float32 step
-    #[arg(long, conflicts_with = "watch")]
-    pub(crate) check: bool,
-    /// With --check: how the report is written on standard output
-    #[arg(long, value_name = "FORMAT", requires = "check", conflicts_with = "json", value_parser = formats())]
-    report: Option<Format>,
-    #[command(flatten)]
+    /// Interpolation scheme between keyframes; several, comma-separated, become one clip
+    /// each; `all` for all but step
+    #[arg(long, help_heading = "Curve", value_name = "NAME[,NAME…]", default_value = "bessel", value_delimiter = ',', value_parser = schemes())]
+    scheme: Vec<Schemes>,
+    /// End condition of the rotation curve
+    #[arg(long, help_heading = "Curve", default_value = "natural", value_parser = ends(), hide_possible_values = false)]
+    pub(crate) ends: Ends,
+    #[command(flatten, next_help_heading = "Curve")]
+    pub(crate) tangents: Tangents,
+    /// Play F times faster
+    #[arg(long, help_heading = "Curve", value_name = "F", default_value = "1", allow_negative_numbers = true, value_parser = positive)]
+    pub(crate) time_scale: f64,
+    /// Move the rotating object along this path
+    #[arg(long, help_heading = "Path", value_name = "PATH.dat", value_hint = ValueHint::FilePath)]
+    pub(crate) path: Option<PathBuf>,
+    #[command(flatten, next_help_heading = "Path")]
+    pub(crate) along: Along,
+    #[command(flatten, next_help_heading = "Sampling")]
     pub(crate) keys: Keys,
     #[command(flatten)]
-    pub(crate) order: OrderFlag,
-    /// Send what the inputs turn along this path
-    #[arg(long, value_name = "PATH.dat", value_hint = ValueHint::FilePath)]
-    pub(crate) path: Option<PathBuf>,
-    /// Draw a picture of the result too; for several inputs a folder
+    pub(crate) scenery: Scenery,
+    /// File to write, .glb or .gltf (with a .bin beside it); `-` writes a .glb to standard
+    /// output. A folder for several inputs [default: IN.glb next to the input]
+    #[arg(short, long, help_heading = "Output", value_name = "OUT", value_hint = ValueHint::AnyPath)]
+    pub(crate) output: Option<PathBuf>,
+    /// Render an image of the result too; a folder for several inputs
     #[cfg(feature = "render")]
-    #[arg(long, value_name = "OUT.png", value_hint = ValueHint::FilePath)]
+    #[arg(long, help_heading = "Output", value_name = "OUT.png", value_hint = ValueHint::FilePath)]
     pub(crate) thumbnail: Option<PathBuf>,
-    /// Print the summary as JSON on standard output (on standard error where the .glb
-    /// goes to standard output)
-    #[arg(long)]
+    /// Convert again whenever an input changes, until interrupted
+    #[arg(long, help_heading = "Output")]
+    pub(crate) watch: bool,
+    /// Print the summary as JSON on standard output (on standard error if the .glb goes to
+    /// standard output)
+    #[arg(long, help_heading = "Output")]
     pub(crate) json: bool,
     /// Print errors only
-    #[arg(short, long)]
+    #[arg(short, long, help_heading = "Output")]
     pub(crate) quiet: bool,
-    #[command(flatten, next_help_heading = "Paths")]
-    pub(crate) along: Along,
-    #[command(flatten, next_help_heading = "Cameras, copies, and the path itself")]
-    pub(crate) scenery: Scenery,
+    /// Write nothing: exit with code 3 if an output is out of date with its inputs and
+    /// options; values may differ by one float32 step
+    #[arg(long, help_heading = "Checks", conflicts_with = "watch")]
+    pub(crate) check: bool,
+    /// With --check: format of the report on standard output
+    #[arg(long, help_heading = "Checks", value_name = "FORMAT", requires = "check", conflicts_with = "json", value_parser = formats())]
+    report: Option<Format>,
 }
 
 impl Convert {

@@ -11,37 +11,35 @@ use std::path::PathBuf;
 
 #[derive(Args, Debug)]
 pub(crate) struct Diff {
-    /// The first file, as it was: .glb, .gltf
+    /// Reference file: .glb, .gltf
     #[arg(value_name = "A", value_hint = ValueHint::FilePath)]
     pub(crate) a: PathBuf,
-    /// The second file, as it is: .glb, .gltf
+    /// File to compare with it: .glb, .gltf
     #[arg(value_name = "B", value_hint = ValueHint::FilePath)]
     pub(crate) b: PathBuf,
-    /// A clip or node OLD of the first file is NEW in the second; may be said several
-    /// times
+    /// Match clip or node OLD of A with NEW of B (repeatable)
     #[arg(long, value_name = "OLD=NEW", value_parser = mapping)]
     pub(crate) map: Vec<(String, String)>,
-    /// The largest angle, degrees, by which a node may be turned differently, locally and
-    /// in the world
+    /// Max rotation difference of a node, degrees, local and world
     #[arg(long, value_name = "DEG", value_parser = degrees)]
     pub(crate) max_error: Option<f64>,
-    /// The largest distance, units, between the places of a node, locally and in the world
+    /// Max position difference of a node, units, local and world
     #[arg(long, value_name = "UNITS", value_parser = degrees)]
     pub(crate) max_distance: Option<f64>,
-    /// The largest difference of a scale
+    /// Max scale difference
     #[arg(long, value_name = "X", value_parser = degrees)]
     pub(crate) max_scale: Option<f64>,
-    /// The largest difference of a morph weight
+    /// Max morph weight difference
     #[arg(long, value_name = "X", value_parser = degrees)]
     pub(crate) max_weight: Option<f64>,
-    /// Warnings fail too: clips, nodes and channels that only one file has
+    /// Treat warnings as errors: clips, nodes and channels present in only one file
     #[arg(long)]
     pub(crate) strict: bool,
-    /// Draw both poses where they differ most, the first file on the left
+    /// Render both poses where they differ most, A on the left
     #[cfg(feature = "render")]
     #[arg(long, value_name = "OUT.png", value_hint = ValueHint::FilePath)]
     pub(crate) picture: Option<PathBuf>,
-    /// Width and height of each half of the picture in pixels
+    /// Width and height of each half of the image in pixels
     #[cfg(feature = "render")]
     #[arg(long, value_name = "WxH", default_value = "512x512", requires = "picture", value_parser = size)]
     pub(crate) size: (u32, u32),

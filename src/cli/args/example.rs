@@ -4,7 +4,7 @@ use clap::Args;
 
 #[derive(Args, Debug)]
 pub(crate) struct Example {
-    /// Which kind of input
+    /// Kind of input
     #[arg(value_enum)]
     pub(crate) kind: Kind,
 }
@@ -12,15 +12,15 @@ pub(crate) struct Example {
 /// A kind of input.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 pub(crate) enum Kind {
-    /// A chain of three boxes that swing
+    /// A swinging chain of three boxes
     Chain,
-    /// One free body that tumbles, in the order x y z w
+    /// A tumbling free body, component order x y z w
     Body,
-    /// Key points of a flight that lands
+    /// Key points of a flight and landing
     Flight,
     /// Control points of a Bézier path
     Bezier,
-    /// A Bézier path for a camera that watches the flight
+    /// A Bézier path of a camera watching the flight
     Camera,
     /// Roll, pitch and yaw in degrees
     Euler,

@@ -9,7 +9,7 @@ use dat2glb::report::Format;
 /// What shapes the tangents of `kochanek-bartels`.
 #[derive(Args, Debug)]
 pub(crate) struct Tangents {
-    /// kochanek-bartels: 1 stops at every key, -1 runs through it twice as fast
+    /// kochanek-bartels: tangent length at keys: 1 stops, -1 doubles the speed
     #[arg(
         long,
         value_name = "T",
@@ -19,8 +19,7 @@ pub(crate) struct Tangents {
         value_parser = one_at_most
     )]
     tension: f64,
-    /// kochanek-bartels: a corner at every key, below 0 as straight lines make it, above 0
-    /// the other way
+    /// kochanek-bartels: corner at keys: -1 tight, +1 inverted
     #[arg(
         long,
         value_name = "C",
@@ -30,7 +29,7 @@ pub(crate) struct Tangents {
         value_parser = one_at_most
     )]
     continuity: f64,
-    /// kochanek-bartels: 1 leaves a key as it came, -1 comes as it will leave
+    /// kochanek-bartels: 1: tangent of the incoming segment, -1: of the outgoing
     #[arg(
         long,
         value_name = "B",
@@ -50,7 +49,7 @@ impl Tangents {
 
 #[derive(Args, Debug)]
 pub(crate) struct OrderFlag {
-    /// The order of a quaternion's parts in the input; overrides its header
+    /// Component order of quaternions (overrides the header)
     #[arg(long = "quat-order", value_name = "ORDER", value_parser = named(Order::from_name, vec![("wxyz", ""), ("xyzw", "")]))]
     pub(crate) order: Option<Order>,
 }
@@ -58,13 +57,13 @@ pub(crate) struct OrderFlag {
 /// How findings are told.
 #[derive(Args, Debug)]
 pub(crate) struct ReportFlag {
-    /// How the report is written on standard output
+    /// Format of the report on standard output
     #[arg(long, value_name = "FORMAT", default_value = "text", value_parser = formats())]
     report: Format,
     /// Short for --report json
     #[arg(long, conflicts_with = "report")]
     json: bool,
-    /// Print nothing but what cannot be read; the exit code tells
+    /// Print only read errors; see the exit code
     #[arg(short, long)]
     pub(crate) quiet: bool,
 }
@@ -78,11 +77,11 @@ impl ReportFlag {
 #[cfg(feature = "render")]
 #[derive(Args, Debug)]
 pub(crate) struct RendererFlag {
-    /// What to draw with
+    /// Renderer backend
     #[arg(long, default_value = "auto", value_parser = named(renderer_named, vec![
-        ("auto", "wgpu where it finds an adapter, else in software"),
-        ("wgpu", "a graphics adapter, hardware or software"),
-        ("cpu", "the built-in software renderer, the same on every machine"),
+        ("auto", "wgpu if there is an adapter, else cpu"),
+        ("wgpu", "GPU, or a software adapter"),
+        ("cpu", "built-in software renderer, same pixels on every machine"),
     ]))]
     pub(crate) renderer: dat2glb::render::Renderer,
 }

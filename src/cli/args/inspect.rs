@@ -6,12 +6,12 @@ use std::path::PathBuf;
 
 #[derive(Args, Debug)]
 pub(crate) struct Inspect {
-    /// The file: keyframes, a path, .glb, .gltf; `-` reads standard input
+    /// Keyframes or a path (.dat), .glb or .gltf; `-` reads standard input
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) file: PathBuf,
     #[command(flatten)]
     pub(crate) order: OrderFlag,
-    /// Print it as JSON
+    /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
 }

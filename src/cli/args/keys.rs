@@ -13,34 +13,34 @@ pub(crate) struct Keys {
     /// Samples per second: 60, 23.976, 30000/1001 [default: 60]
     #[arg(long)]
     fps: Option<Fps>,
-    /// Leave the key times out: an even grid of samples, which may miss the keys
+    /// Sample on an even grid only, which may miss the input's keyframes
     #[arg(long)]
     no_key_times: bool,
-    /// Instead of a rate, as few keys as keep playback within so many degrees of the curve
+    /// Use the fewest keys that keep playback within DEG of the curve (instead of --fps)
     #[arg(long, value_name = "DEG", conflicts_with_all = ["fps", "no_key_times", "repeat"], allow_negative_numbers = true, value_parser = positive)]
     tolerance: Option<f64>,
-    /// With --tolerance: how far, units, playback may be from the path, and a corner of a
-    /// chain from where it should be; without it what the angle makes of the path's extent
+    /// With --tolerance: max position error, units, along a path and at the corners of a
+    /// chain [default: tolerance × extent of the path]
     #[arg(long, value_name = "UNITS", allow_negative_numbers = true, value_parser = positive)]
     tolerance_distance: Option<f64>,
-    /// With --tolerance: the largest turn from key to key; up to 18 keeps viewers that blend
-    /// the four numbers within 0.01° [default: 18; for cubicspline 90]
+    /// With --tolerance: max angle between neighboring keys; up to 18 keeps viewers that use
+    /// nlerp (Blender) within 0.01° [default: 18; for cubicspline 90]
     #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = step)]
     max_step: Option<f64>,
-    /// With --tolerance: keys lie on the curve, which takes about 1.4 times as many
+    /// With --tolerance: keep keyframes on the curve (takes about 1.4 times as many)
     #[arg(long, requires = "tolerance")]
     on_curve: bool,
-    /// What players do between keys, in glTF's words
+    /// glTF interpolation of the animation samplers
     ///
-    /// LINEAR is the safe default: every viewer plays it right. `cubicspline` takes far
+    /// LINEAR is the safe default: every viewer plays it correctly. `cubicspline` takes far
     /// fewer keys, chosen by --tolerance (0.01 without it), but Blender's importer ignores
-    /// the tangents and draws curves of its own. `step` holds each sample until the next.
+    /// the tangents and fits its own curves. `step` holds each sample until the next.
     #[arg(long, value_name = "NAME", default_value = "linear", value_parser = interpolations())]
     interpolation: Interpolation,
-    /// Write rotations as whole numbers of 16 bits: half the bytes, and up to 0.004° off
+    /// Store rotations as normalized 16-bit integers: half the size, error up to 0.004°
     #[arg(long)]
     quantize: bool,
-    /// Do not work out how far playback is from the curve
+    /// Skip computing the playback error bound
     #[arg(long, conflicts_with = "tolerance")]
     no_bound: bool,
 }
@@ -68,29 +68,29 @@ impl Keys {
 
     /// Why options do not go together that each alone are fine; `copies`: of the object.
     pub(crate) fn conflict(&self, copies: Copies) -> Option<String> {
-        let by_need = "its keys are where --tolerance needs them";
+        let by_need = "--tolerance decides where its keys go";
         let excluded: &[(&str, bool, &str)] = match self.interpolation {
             Interpolation::CubicSpline => &[
                 ("--fps", self.fps.is_some(), by_need),
                 ("--no-key-times", self.no_key_times, by_need),
                 ("--no-bound", self.no_bound, "its keys are chosen by the bound"),
-                ("--repeat", copies.count > 1, "copies share samples that are taken at a rate"),
+                ("--repeat", copies.count > 1, "copies need samples at a fixed rate"),
                 (
                     "--quantize",
                     self.quantize,
-                    "16-bit numbers reach from -1 to 1, where tangents do not fit, and cost up to 0.0033°",
+                    "tangents exceed the 16-bit range of -1 to 1, and rounding costs up to 0.0033°",
                 ),
             ],
             Interpolation::Step => &[
                 (
                     "--tolerance",
                     self.tolerance.is_some(),
-                    "what is held is off by all that moves until the next sample; say --fps",
+                    "a held value is off by all motion up to the next sample; use --fps",
                 ),
                 (
                     "--repeat",
                     copies.wrap && copies.count > 1,
-                    "copies that wrap run back to their start, which is no held pose; add --no-wrap",
+                    "looping copies move back to their start, which is not a held pose; add --no-wrap",
                 ),
             ],
             Interpolation::Linear => &[],
@@ -104,7 +104,7 @@ impl Keys {
                 ("--max-step", self.max_step.is_some()),
             ];
             let (flag, _) = given.into_iter().find(|(_, given)| *given && self.fewest().is_none())?;
-            Some(format!("{flag} needs --tolerance, the angle that playback may be off"))
+            Some(format!("{flag} needs --tolerance, the max rotation error"))
         };
         excluded.iter().find(|(_, given, _)| *given).map(said).or_else(missing)
     }
@@ -124,9 +124,9 @@ fn interpolations() -> ValueParser {
     named(
         |word| ALL.into_iter().find(|&interpolation| name(interpolation) == word),
         vec![
-            ("linear", "the shortest way, at constant speed"),
-            ("cubicspline", "Hermite's cubic, with tangents"),
-            ("step", "each lasts until the next"),
+            ("linear", "slerp: shortest arc, constant speed"),
+            ("cubicspline", "cubic Hermite spline with tangents"),
+            ("step", "holds each key until the next"),
         ],
     )
 }

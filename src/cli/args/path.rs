@@ -12,42 +12,41 @@ use dat2glb::write::Colour;
 /// How to go along a path, and how to look on the way.
 #[derive(Args, Debug)]
 pub(crate) struct Along {
-    /// How time is shared out along the path; without it the kind's own, or the file's
+    /// Timing along the path [default: the file's, or that of the kind of path]
     #[arg(long, value_parser = named(Timing::from_name, vec![
-        ("uniform", "every segment takes equally long"),
-        ("chord", "a segment's time is proportional to the distance between its ends"),
-        ("constant-speed", "equal distances in equal times"),
-        ("times", "from the file"),
+        ("uniform", "equal time per segment"),
+        ("chord", "segment time proportional to its chord length"),
+        ("constant-speed", "constant speed along the arc length"),
+        ("times", "times given in the file"),
     ]))]
     timing: Option<Timing>,
-    /// Rest at the path's ends, under constant speed
+    /// Ease in and out at the path's ends, with constant-speed timing
     #[arg(long, default_value = "none", value_parser = named(Ease::from_name, vec![
         ("none", ""), ("in", "at the start"), ("out", "at the end"), ("in-out", "at both"),
     ]))]
     ease: Ease,
-    /// Mean speed, units a second: the duration is the length divided by it, whatever the
-    /// file's header says
+    /// Mean speed, units per second: duration = length / speed (overrides the header)
     #[arg(long, value_name = "V", allow_negative_numbers = true, value_parser = positive)]
     speed: Option<f64>,
-    /// What the path does at its ends
+    /// End condition of the path
     #[arg(long, default_value = "natural", value_parser = named(PathEnds::from_name, vec![
-        ("natural", "starts and stops without acceleration"),
-        ("clamped", "starts and stops at rest"),
-        ("repeat", "the end point counts twice"),
-        ("closed", "the end runs into the start"),
-        ("periodic", "another word for closed"),
+        ("natural", "zero acceleration at both ends"),
+        ("clamped", "zero velocity at both ends"),
+        ("repeat", "the end point is repeated"),
+        ("closed", "loop: the end connects to the start"),
+        ("periodic", "alias of closed"),
     ]))]
     path_ends: PathEnds,
-    /// How the object looks on its way; without it upright where the path alone moves it,
-    /// none where rotation keys turn it, keyed where the path gives orientations
+    /// Orientation along the path [default: upright for a path alone, none with rotation
+    /// keyframes, keyed if the path has orientations]
     #[arg(long, value_parser = named(Orient::from_name, vec![
-        ("none", "as it stands"),
-        ("keyed", "turned from chord to chord at key points; the scheme runs between"),
-        ("tangent", "along the way, with the least twist"),
-        ("upright", "along the way, with its head up"),
+        ("none", "no rotation"),
+        ("keyed", "orientation keys at the key points, interpolated by the scheme"),
+        ("tangent", "tangent forward, minimal twist"),
+        ("upright", "tangent forward, +Y up"),
     ]))]
     orient: Option<Orient>,
-    /// How far it leans into the sharpest turn; upright only
+    /// Max bank angle, in the sharpest turn (upright only)
     #[arg(
         long,
         value_name = "DEG",
@@ -57,7 +56,7 @@ pub(crate) struct Along {
         value_parser = finite
     )]
     bank: f64,
-    /// The last N orientation keys have no pitch and no roll: a landing
+    /// Zero pitch and roll at the last N orientation keys (landing)
     #[arg(
         long,
         value_name = "N",
@@ -66,7 +65,7 @@ pub(crate) struct Along {
         allow_negative_numbers = true
     )]
     level_end: usize,
-    /// The first N orientation keys have no pitch and no roll
+    /// Zero pitch and roll at the first N orientation keys (takeoff)
     #[arg(
         long,
         value_name = "N",
@@ -75,10 +74,10 @@ pub(crate) struct Along {
         allow_negative_numbers = true
     )]
     level_start: usize,
-    /// Where the model's nose points
+    /// Forward axis of the model
     #[arg(long, value_name = "AXIS", default_value = "Z", allow_hyphen_values = true, value_parser = axis())]
     model_forward: Axis,
-    /// Where the model's top points
+    /// Up axis of the model
     #[arg(long, value_name = "AXIS", default_value = "Y", allow_hyphen_values = true, value_parser = axis())]
     model_up: Axis,
 }
@@ -114,29 +113,29 @@ impl Along {
 /// What there is beside the object.
 #[derive(Args, Debug)]
 pub(crate) struct Scenery {
-    /// Add a camera; may be said several times.
-    /// `PATH.dat[,look-at=root|X:Y:Z][,rotation=FILE]`: on a path of its own, looking ahead, at
-    /// the object, at a point, or by rotations of its own. `follow[,offset=X:Y:Z]`: behind and
-    /// above the object. `keys`: a still one beside each key point
-    #[arg(long = "camera", value_name = "SPEC", value_parser = clap::value_parser!(CameraSpec), verbatim_doc_comment)]
+    /// Add a camera (repeatable).
+    /// `PATH.dat[,look-at=root|X:Y:Z][,rotation=FILE]`: on its own path,
+    /// looking ahead, at the object, at a point, or with its own rotation keyframes.
+    /// `follow[,offset=X:Y:Z]`: behind and above the object. `keys`: a static camera
+    /// beside each key point
+    #[arg(long = "camera", help_heading = "Cameras", value_name = "SPEC", value_parser = clap::value_parser!(CameraSpec), verbatim_doc_comment)]
     pub(crate) cameras: Vec<CameraSpec>,
-    /// Send so many objects along the path, one after another
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    /// Number of copies following the path
+    #[arg(long, help_heading = "Copies", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     repeat: Option<u32>,
-    /// Seconds from one object to the next; without it evenly over the path
-    #[arg(long, value_name = "SECONDS", requires = "repeat", allow_negative_numbers = true, value_parser = positive)]
+    /// Seconds between copies [default: evenly spread over the path]
+    #[arg(long, help_heading = "Copies", value_name = "SECONDS", requires = "repeat", allow_negative_numbers = true, value_parser = positive)]
     delay: Option<f64>,
-    /// Hide each object until it starts, instead of wrapping all into one loop; the clip
-    /// gets longer
-    #[arg(long, requires = "repeat")]
+    /// Hide each copy until it starts instead of looping them all; makes the clip longer
+    #[arg(long, help_heading = "Copies", requires = "repeat")]
     no_wrap: bool,
-    /// Show the path too: as a line, with its control points and their polygon
-    #[arg(long)]
+    /// Export the path as a line, with its control points and control polygon
+    #[arg(long, help_heading = "Output")]
     export_path: bool,
-    /// What the colours of the line tell
-    #[arg(long, default_value = "time", requires = "export_path", value_parser = named(Colour::from_name, vec![
-        ("time", "when the path passes: dark early, light late"),
-        ("depth", "how far along Z: dark behind, light in front"),
+    /// Color of the exported path
+    #[arg(long, help_heading = "Output", default_value = "time", requires = "export_path", value_parser = named(Colour::from_name, vec![
+        ("time", "by time: dark early, light late"),
+        ("depth", "by depth along Z: dark behind, light in front"),
     ]))]
     color: Colour,
 }

@@ -9,50 +9,49 @@ use std::path::PathBuf;
 
 #[derive(Args, Debug)]
 pub(crate) struct Thumbnail {
-    /// The file to draw: .glb, .gltf
+    /// File to render: .glb, .gltf
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) file: PathBuf,
-    /// What to write: a picture (.png) or moving pictures (.gif, .apng, .webp); without it
-    /// FILE.png. `-` writes a .png to standard output
+    /// Image (.png) or animation (.gif, .apng, .webp) to write; `-` writes a .png to standard
+    /// output [default: FILE.png]
     #[arg(short, long, value_name = "OUT", value_hint = ValueHint::FilePath)]
     pub(crate) output: Option<PathBuf>,
-    /// Width and height in pixels, of one cell where there are several; without it 512x512,
-    /// with --camera in the camera's shape
+    /// Width and height in pixels, per cell [default: 512x512; with --camera, the camera's
+    /// aspect ratio]
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub(crate) size: Option<(u32, u32)>,
-    /// Seconds, or a share of the clip; without it 50%, with --ghost 100%
+    /// Time in seconds, or percentage of the clip [default: 50%; with --ghost 100%]
     #[arg(long, value_name = "2.5|50%", value_parser = time, allow_hyphen_values = true, conflicts_with = "sheet")]
     pub(crate) time: Option<Time>,
-    /// The clip's name; without it the first clip
+    /// Clip to render [default: the first]
     #[arg(long, value_name = "NAME", conflicts_with = "side_by_side")]
     pub(crate) clip: Option<String>,
-    /// Every clip of the file next to each other, in step, with its name; with --sheet one
-    /// below the other
+    /// All clips side by side, synchronized and labeled; with --sheet, stacked
     #[arg(long)]
     pub(crate) side_by_side: bool,
-    /// A contact sheet: so many columns and rows of moments from the clip's start to its end
+    /// Contact sheet: a grid of C columns and R rows of frames from start to end of the clip
     #[arg(long, value_name = "CxR", value_parser = sheet, conflicts_with = "ghost")]
     pub(crate) sheet: Option<(u32, u32)>,
-    /// N poses from the start up to --time in one picture, older ones fainter, and the ways
-    /// that corners of boxes have gone
+    /// Overlay N poses from the start up to --time, older ones fainter, with the trails of
+    /// the box corners
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) ghost: Option<u32>,
-    /// Frames per second of moving pictures; without it 25
+    /// Frames per second of an animation [default: 25]
     #[arg(long)]
     pub(crate) fps: Option<Fps>,
-    /// Moving pictures turn once around the scene
+    /// Animation: orbit the camera once around the scene
     #[arg(long, conflicts_with = "camera")]
     pub(crate) turntable: bool,
-    /// Moving pictures repeat even when the clip's last pose does not meet its first
+    /// Animation: loop even if the last pose differs from the first
     #[arg(long = "loop")]
     pub(crate) repeat: bool,
-    /// Look through this camera of the file: the name of its node, or its own
+    /// Render through this camera of the file, by its name or its node's
     #[arg(long, value_name = "NAME")]
     pub(crate) camera: Option<String>,
-    /// What lies behind: studio, transparent, #rgb, #rrggbb or the name of a colour
+    /// Background: studio, transparent, #rgb, #rrggbb or a color name
     #[arg(long, value_name = "COLOR", default_value = "studio")]
     pub(crate) background: Background,
-    /// Draw a grid on the ground and the axes: X red, Y green (up), Z blue
+    /// Draw a ground grid and the axes: X red, Y green (up), Z blue
     #[arg(long)]
     pub(crate) floor: bool,
     #[command(flatten)]
@@ -72,7 +71,7 @@ fn time(text: &str) -> Result<Time, String> {
         Some(percent) => number(percent).map(|percent| Time::Fraction(percent / 100.0)),
         None => number(text.strip_suffix('s').unwrap_or(text)).map(Time::Seconds),
     };
-    time.ok_or_else(|| "expected seconds, such as 2.5, or a share of the clip, such as 50%".to_owned())
+    time.ok_or_else(|| "expected seconds, such as 2.5, or a percentage of the clip, such as 50%".to_owned())
 }
 
 #[cfg(test)]

@@ -81,18 +81,18 @@ pub(super) fn schemes() -> ValueParser {
         "all" => Some(Schemes(Scheme::ALL)),
         name => Scheme::EVERY.iter().position(|s| s.name() == name).map(|i| Schemes(&Scheme::EVERY[i..=i])),
     };
-    named(from_name, scheme_names().into_iter().chain([("all", "every one of these but step")]).collect())
+    named(from_name, scheme_names().into_iter().chain([("all", "all but step")]).collect())
 }
 
 pub(super) fn ends() -> ValueParser {
     let values = [
-        ("natural", "starts and stops without acceleration"),
-        ("clamped", "starts and stops at rest"),
-        ("repeat", "the end key counts twice"),
-        ("closed", "the last key runs into the first"),
-        ("periodic", "another word for closed"),
-        ("hold", "each end segment rests at its first key, then jumps"),
-        ("chord", "starts and stops at the mean velocity of its first and last step"),
+        ("natural", "zero acceleration at both ends"),
+        ("clamped", "zero velocity at both ends"),
+        ("repeat", "the end key is repeated"),
+        ("closed", "loop: the last key connects to the first"),
+        ("periodic", "alias of closed"),
+        ("hold", "each end segment holds its first key, then jumps"),
+        ("chord", "end tangents are the mean velocity of the first and last segment"),
     ];
     named(Ends::from_name, values.to_vec())
 }
