@@ -180,7 +180,7 @@ fn check_neighbours(
         return match reduced.files.is_empty() {
             true => Ok(()),
             false => {
-                Err(Failure::usage("a .gltf and its .bin do not fit into standard output: say -o OUT.gltf"))
+                Err(Failure::usage("a .gltf and its .bin do not fit into standard output: use -o OUT.gltf"))
             }
         };
     }
@@ -273,7 +273,7 @@ fn checked(
     let played = rewrite::strayed(input, &mut asset).map_err(|error| broken(error.to_string()))?;
     let stated = worst(&reduced.facts);
     if !within(played, stated) {
-        return Err(broken(format!("its playback strays by {played:?}, expected {stated:?} at most")));
+        return Err(broken(format!("its playback error is {played:?}, expected {stated:?} at most")));
     }
     Ok(())
 }
@@ -341,7 +341,7 @@ fn clip_line(index: usize, clip: &ClipFacts) -> String {
     let parts = [(degrees, "°"), (units, " units"), (scale, " of scale"), (weight, " of weights")];
     let parts = parts.iter().filter(|(distance, _)| *distance > 0.0);
     let parts: Vec<String> = parts.map(|(distance, unit)| format!("{}{unit}", rounded(*distance))).collect();
-    let within = if parts.is_empty() { String::new() } else { format!(", within {}", parts.join(", ")) };
+    let within = if parts.is_empty() { String::new() } else { format!(", max error {}", parts.join(", ")) };
     format!("{name}: {} → {} keys{within}", clip.keys_before, clip.keys_after)
 }
 

@@ -108,27 +108,29 @@ impl<'a> Summary<'a> {
         let count = |n: usize, one: &str, many: &str| format!("{n} {}", if n == 1 { one } else { many });
         let uneven = self.clips.iter().any(|clip| clip.samples_in_all != clip.samples * self.movers as u64);
         let clips = match self.clips {
-            [clip] if uneven => format!("{} samples in all", clip.samples_in_all),
+            [clip] if uneven => format!("{} samples in total", clip.samples_in_all),
             [clip] => format!("{} samples each", clip.samples),
-            clips => format!("{} clips, {} samples in all", clips.len(), self.samples),
+            clips => format!("{} clips, {} samples in total", clips.len(), self.samples),
         };
         let worst = |figure: fn(&ClipFacts) -> Option<f64>| -> Option<f64> {
             let all: Option<Vec<f64>> = self.clips.iter().map(figure).collect();
             all.map(|all| all.into_iter().fold(0.0, f64::max))
         };
         let say = |figure: Option<f64>, what: fn(f64) -> String| figure.map_or(String::new(), what);
-        let deviation = say(worst(|clip| clip.deviation_degrees), |x| format!(", within {x}° of the curve"));
+        let deviation =
+            say(worst(|clip| clip.deviation_degrees), |x| format!(", max rotation error {}°", bound(x)));
         let measured =
-            say(worst(|clip| clip.measured_degrees), |x| format!(", {x}° off where it was looked at"));
-        let distance = say(worst(|clip| clip.deviation_units), |x| format!(", within {x} units of the path"));
-        let moved = say(worst(|clip| clip.keys_moved_degrees), |x| format!(", keys moved by up to {x}°"));
-        let displacement = say(worst(|clip| clip.displacement_units), |x| {
-            format!(", corners within {x} units of where they should be")
-        });
+            say(worst(|clip| clip.measured_degrees), |x| format!(", measured rotation error {}°", bound(x)));
+        let distance =
+            say(worst(|clip| clip.deviation_units), |x| format!(", max path error {} units", bound(x)));
+        let moved =
+            say(worst(|clip| clip.keys_moved_degrees), |x| format!(", keys moved by up to {}°", bound(x)));
+        let displacement =
+            say(worst(|clip| clip.displacement_units), |x| format!(", max position error {}", bound(x)));
         let displacement = match self.chain_length {
             Some(length) if !displacement.is_empty() => {
                 let share = worst(|clip| clip.displacement_units).unwrap_or_default() / length;
-                format!("{displacement} ({:.1e} of the chain's length)", share)
+                format!("{displacement} ({} % of the chain)", bound(100.0 * share))
             }
             _ => displacement,
         };
@@ -157,6 +159,20 @@ fn rounded(seconds: f64) -> f64 {
     (seconds * 1e6).round() / 1e6
 }
 
+/// A bound for people: two digits, rounded up, so that it stays one.
+fn bound(x: f64) -> String {
+    if !x.is_finite() || x <= 0.0 {
+        return x.to_string();
+    }
+    let scale = libm::pow(10.0, 1.0 - libm::log10(x).floor());
+    let up = (x * scale - 1e-9).ceil() / scale;
+    match 1 - libm::log10(up).floor() as i32 {
+        decimals @ 0..=7 => format!("{up:.*}", decimals as usize),
+        -4..0 => up.to_string(),
+        _ => format!("{up:.1e}"),
+    }
+}
+
 /// Bytes for people.
 pub(super) fn size(bytes: u64) -> String {
     match bytes as f64 {
@@ -176,4 +192,27 @@ pub(super) fn print_failure(input: &Path, failure: &Failure) -> Result<(), Failu
         "exitCode": failure.exit as u8,
     });
     shown(writeln!(io::stdout(), "{line}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::bound;
+
+    #[test]
+    fn bounds_are_two_digits_and_rounded_up() {
+        let cases = [
+            (0.0, "0"),
+            (0.0089645, "0.0090"),
+            (0.0016775, "0.0017"),
+            (0.0999, "0.10"),
+            (0.1, "0.10"),
+            (1.01, "1.1"),
+            (12.3, "13"),
+            (180.0, "180"),
+            (1.23e-9, "1.3e-9"),
+        ];
+        for (x, text) in cases {
+            assert_eq!(bound(x), text);
+        }
+    }
 }
