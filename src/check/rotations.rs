@@ -188,7 +188,7 @@ impl Rotations<'_> {
                 Code::RotationLargeStep,
                 place,
                 format!(
-                    "{} of {keys} rotations are more than 18° from the one before, {worst} by {:.1}°; Blender strays up to {:.3}° there: use more samples a second",
+                    "{} of {keys} rotations are more than 18° from the one before, {worst} by {:.1}°; the error in Blender (nlerp) is up to {:.3}° there: use more samples per second",
                     self.steps.count, worst.measure, 1.22e-6 * worst.measure.powi(3)
                 ),
             );

@@ -64,7 +64,7 @@ impl FromStr for CameraSpec {
             return Err(format!("{key}= does not go with '{name}'"));
         }
         if matches!(&kind, Kind::Path { look_at: Some(_), rotation: Some(_), .. }) {
-            return Err("expected look-at= or rotation=, found both: a camera looks one way".to_owned());
+            return Err("expected look-at= or rotation=, found both: a camera has one aim".to_owned());
         }
         Ok(CameraSpec { said: text.to_owned(), kind })
     }
@@ -137,7 +137,7 @@ impl CameraSpec {
         let Input::Path(file) = files::input(path, None)? else {
             let name = display_name(path);
             return Err(Failure::refused(format!(
-                "{name}: expected the path of a camera, found rotations; say --camera PATH.dat,rotation={name}"
+                "{name}: expected the path of a camera, found rotations; use --camera PATH.dat,rotation={name}"
             )));
         };
         let view = match (look_at, rotation) {

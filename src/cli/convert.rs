@@ -162,9 +162,7 @@ fn jobs(options: &Convert) -> Result<Vec<Job>, Failure> {
             Some(folder) if several || is_folder(folder) => in_folder(folder, input, "glb", several)?,
             Some(output) => output.clone(),
             None if is_standard(input) => {
-                return Err(Failure::usage(
-                    "standard input has no name for the output to take: say -o OUT.glb",
-                ));
+                return Err(Failure::usage("standard input gives the output no name: use -o OUT.glb"));
             }
             None => input.with_extension("glb"),
         };
@@ -199,7 +197,7 @@ fn is_folder(path: &Path) -> bool {
 
 fn in_folder(folder: &Path, input: &Path, ending: &str, make: bool) -> Result<PathBuf, Failure> {
     if is_standard(folder) {
-        return Err(Failure::usage("several inputs do not fit into standard output: say -o FOLDER"));
+        return Err(Failure::usage("cannot write several outputs to standard output: use -o FOLDER"));
     }
     if (make || is_folder(folder)) && !folder.exists() {
         fs::create_dir_all(folder).map_err(|error| {

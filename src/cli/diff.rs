@@ -79,7 +79,7 @@ fn failure(error: diff::Error, options: &Arguments) -> (&Path, Failure) {
     match &error {
         diff::Error::Asset { which, error } => {
             let file = file(*which);
-            let message = format!("{}: {error}\n`dat2glb check` says all that is wrong with it", name(file));
+            let message = format!("{}: {error}\nrun `dat2glb check` on it for all errors", name(file));
             (file, Failure::refused(message))
         }
         diff::Error::Name { which, .. } => {

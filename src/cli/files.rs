@@ -99,7 +99,7 @@ impl Gathered {
         schemes: &[Scheme],
     ) -> Result<Ground<'_>, Failure> {
         if self.inputs.path.is_none() && along {
-            let problem = "options of a path are given, but no path: say --path PATH.dat";
+            let problem = "path options are given, but no path: use --path PATH.dat";
             return Err(Failure::usage(format!("{name}: {problem}")));
         }
         if shape.tcb != Tcb::default() && !schemes.iter().any(|scheme| scheme.has_tcb()) {

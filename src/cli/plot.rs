@@ -135,7 +135,7 @@ fn or(schemes: Vec<Scheme>, usual: &[Scheme]) -> Vec<Scheme> {
 fn gathered(options: &Plot, path: &Path) -> Result<Gathered, Failure> {
     let ending = path.extension().map(OsStr::to_ascii_lowercase);
     if ending.is_some_and(|ending| ending == "glb" || ending == "gltf") {
-        let problem = "expected keyframes or a path; for a .glb or .gltf say --show error --against IN.dat";
+        let problem = "expected keyframes or a path; for a .glb or .gltf use --show error --against IN.dat";
         return Err(Failure::usage(format!("{}: {problem}", path.display())));
     }
     let paths: Vec<&Path> = std::iter::once(path).chain(options.path.as_deref()).collect();

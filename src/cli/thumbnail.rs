@@ -57,7 +57,7 @@ fn format(arguments: &Thumbnail, path: &Path) -> Result<Option<Format>, Failure>
     let format = ending.as_deref().and_then(Format::of_ending);
     let is_png = ending.as_deref().is_none_or(|ending| ending.eq_ignore_ascii_case("png"));
     if format.is_none() && !is_png && !is_device(path) {
-        let kinds = ".png for a picture, .gif, .apng or .webp for moving ones";
+        let kinds = ".png for an image, .gif, .apng or .webp for an animation";
         return Err(Failure::usage(format!("{shown}: expected a name that ends in {kinds}")));
     }
     let still = [
@@ -71,15 +71,15 @@ fn format(arguments: &Thumbnail, path: &Path) -> Result<Option<Format>, Failure>
         ("--loop", arguments.repeat),
     ];
     let (wrong, kind, right) = match format {
-        Some(_) => (still, "a still picture", ".png"),
-        None => (moving, "moving pictures", ".gif, .apng or .webp"),
+        Some(_) => (still, "images", ".png"),
+        None => (moving, "animations", ".gif, .apng or .webp"),
     };
     if let Some((option, _)) = wrong.into_iter().find(|(_, given)| *given) {
         return Err(Failure::usage(format!("{option} is for {kind}, {right}; found {shown}")));
     }
     if format == Some(Format::Gif) && 1.0 / rate(arguments).interval() > MOST_OF_GIF {
         let advice = ".apng and .webp can have more";
-        return Err(Failure::usage(format!("{shown}: GIF plays at most 50 frames a second: {advice}")));
+        return Err(Failure::usage(format!("{shown}: GIF plays at most 50 frames per second: {advice}")));
     }
     Ok(format)
 }

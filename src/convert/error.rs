@@ -14,7 +14,7 @@ pub enum Error {
     #[error(
         "{source_name}:{}: the keys in lines {} and {} are so close that float32, glTF's number for times, \
          cannot tell them apart {seconds} s after the first key; leave one of them out{}",
-        .lines.1, .lines.0, .lines.1, if *.key_times { ", or say --no-key-times" } else { "" }
+        .lines.1, .lines.0, .lines.1, if *.key_times { ", or use --no-key-times" } else { "" }
     )]
     KeysTooClose {
         /// The input's name.
@@ -45,7 +45,7 @@ pub enum Error {
         several_schemes: bool,
     },
     /// Copies of what has keys of its own, by a flag.
-    #[error("{0}: copies share samples that are taken at a rate: leave out {1} or --repeat")]
+    #[error("{0}: copies need samples at a fixed rate: leave out {1} or --repeat")]
     Copies(String, &'static str),
     /// A tolerance that cannot be kept.
     #[error("{source_name}: {}", unkept(*.error, unit, *.reserve, *.shared))]
@@ -69,17 +69,17 @@ fn unkept(error: reduce::Error, unit: &str, reserve: f64, shared: bool) -> Strin
             "a tolerance of {tolerance:.1e}{unit} is too small: float32 numbers need at least {least:.1e}{unit}"
         ),
         reduce::Error::Swings { .. } => {
-            return format!("{error}: sample it at a rate (--fps) instead, or take --scheme bessel");
+            return format!("{error}: use a fixed rate (--fps) instead, or --scheme bessel");
         }
         reduce::Error::Spins { .. } => {
-            return format!("{error}: sample it at a rate (--fps) instead, or take --scheme slerp");
+            return format!("{error}: use a fixed rate (--fps) instead, or --scheme slerp");
         }
         reduce::Error::Times { time, tolerance } => format!(
             "float32 times cannot follow the curve at {time:.6} s to within {tolerance:.1e}{unit}: \
              choose a larger tolerance, or a rate (--fps) instead"
         ),
     };
-    let part = if shared { "; it is what --tolerance-distance leaves for one node" } else { "" };
+    let part = if shared { "; this is the share of --tolerance-distance for one node" } else { "" };
     let coding = if reserve > 0.0 {
         format!(" (--quantize alone takes {reserve:.1e}°: choose a larger tolerance, or leave it out)")
     } else {

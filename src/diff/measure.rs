@@ -45,7 +45,7 @@ impl Measure {
             Measure::LocalScale => "local scale",
             Measure::Weights => "morph weights",
             Measure::WorldRotation => "world rotation",
-            Measure::WorldTranslation => "world place",
+            Measure::WorldTranslation => "world position",
         }
     }
 

@@ -320,7 +320,7 @@ fn limits_make_findings() {
         "{messages:?}"
     );
     assert!(messages[1].contains("at most 0.1° is allowed; 1 more node exceeds it"), "{messages:?}");
-    assert!(messages[2].contains("world place of node tip differs by 1.03527"), "{messages:?}");
+    assert!(messages[2].contains("world position of node tip differs by 1.03527"), "{messages:?}");
     let limits = Limits { units: Some(0.5), degrees: Some(29.0), ..Limits::default() };
     assert_eq!(diff.most_telling(&limits).unwrap().difference.measure, Measure::WorldTranslation);
     assert_eq!(diff.most_telling(&Limits::default()).unwrap().difference.measure, Measure::WorldRotation);

@@ -106,9 +106,9 @@ impl fmt::Display for KeyframesSummary {
             }
             None => writeln!(f, "keyframes of a free body, {bytes} bytes")?,
         }
-        writeln!(f, "order of a quaternion's parts: {quat_order}")?;
+        writeln!(f, "component order: {quat_order}")?;
         writeln!(f, "keys: {keys}, from {} s, {} s long", self.start, digits(self.seconds))?;
-        writeln!(f, "rate: about {} keys a second", digits(self.keys_per_second))?;
+        writeln!(f, "rate: about {} keys per second", digits(self.keys_per_second))?;
         for (name, gap) in [("shortest", self.shortest_gap), ("longest", self.longest_gap)] {
             writeln!(f, "{name} gap: {} s (before line {})", digits(gap.value), gap.line)?;
         }

@@ -144,7 +144,7 @@ pub enum Error {
     #[error(transparent)]
     Model(#[from] ParallelAxes),
     /// Still cameras without a path.
-    #[error("cameras beside key points need a path with key points: say --path PATH.dat")]
+    #[error("cameras beside key points need a path with key points: use --path PATH.dat")]
     NoKeyPoints,
     /// More copies than the way has room for.
     #[error(transparent)]

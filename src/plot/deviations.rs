@@ -89,7 +89,7 @@ fn drawn(found: Vec<Series>, wanted: &AskedOfFile) -> Figure {
     let panels: Vec<Panel> = panels.collect();
     legend.extend(limits.iter().map(|what| Entry { label: (*what).to_owned(), sign: Sign::Line(LIMIT) }));
     legend.push(Entry { label: "key times".to_owned(), sign: Sign::Mark });
-    let mut figure = Figure::over_time(format!("{}: playback off its curve", wanted.name), legend, panels);
+    let mut figure = Figure::over_time(format!("{}: playback error", wanted.name), legend, panels);
     if figure.panels.len() == 4 {
         (figure.columns, figure.cell) = (1, [1000.0, 250.0]);
     }
@@ -125,7 +125,7 @@ fn panel(
         }
     }
     let top = drawn.iter().copied().fold(largest, f64::max);
-    let title = format!("{node}: {}", if travels { "place" } else { "rotation" });
+    let title = format!("{node}: {}", if travels { "position" } else { "rotation" });
     let y = Axis::new(format!("deviation ({unit})"), figure::from_zero(top, 1e-6));
     let panel = Panel { title, x: wanted.clock.axis([0.0, duration]), y, equal: false, layers };
     (panel, limits.first().map(|(_, what)| *what))

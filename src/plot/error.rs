@@ -8,7 +8,7 @@ pub enum Error {
     #[error("--show {0} needs rotations that run through keys, found only a path: {1}")]
     NoRotations(&'static str, &'static str),
     /// Something of a path is asked for, and there is none.
-    #[error("--show {0} needs a path, found only rotations: give a file of points, or say --path PATH.dat")]
+    #[error("--show {0} needs a path, found only rotations: give a file of points, or use --path PATH.dat")]
     NoPath(&'static str),
     /// A file's playback is asked for, and there is none.
     #[error("--show error needs a .glb or .gltf, and its input by --against IN.dat")]

@@ -175,10 +175,10 @@ impl Header {
 
     fn take_order(&mut self, at: usize, order: Order) -> Result<(), Wrong> {
         let problem = if self.order.is_some() {
-            "expected one order of a quaternion's parts, found a second".to_owned()
+            "expected one component order of quaternions, found a second".to_owned()
         } else if !self.kind.has_quaternions() {
             let name = self.kind.name();
-            format!("expected no order of a quaternion's parts: a file '{name}' has no quaternions")
+            format!("expected no component order of quaternions: a file '{name}' has no quaternions")
         } else {
             self.order = Some(order);
             return Ok(());

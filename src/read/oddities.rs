@@ -122,7 +122,7 @@ impl Oddities {
 
     fn order_warning(&self, order: Order) -> Option<Warning> {
         let (this, other) = (order.name(), order.other().name());
-        let advice = format!("if the parts stand in the order {other}, say --quat-order {other}");
+        let advice = format!("if the component order is {other}, use --quat-order {other}");
         let swaps =
             self.scalar.positive && self.scalar.negative && self.other.positive && !self.other.negative;
         let message = match self.other_identity_line {

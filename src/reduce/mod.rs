@@ -83,7 +83,9 @@ pub enum Error {
         tolerance: f64,
     },
     /// The curve spins between its keys.
-    #[error("the curve spins, most of all after {time} s: keys follow {turns:.0} turns in all, not more")]
+    #[error(
+        "the curve spins, most of all after {time} s: keyframes can follow {turns:.0} revolutions in total, not more"
+    )]
     Spins {
         /// Where it does so most, seconds.
         time: f64,

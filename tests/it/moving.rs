@@ -170,10 +170,10 @@ fn command_lines_that_make_no_sense() {
         draw(folder.path(), output, options).exits(2).says(words);
         assert_eq!(names(folder.path()), ["swing.glb"], "{options:?}");
     };
-    check("out.gif", &["--sheet", "2x2"], &["--sheet", "still picture", "out.gif"]);
+    check("out.gif", &["--sheet", "2x2"], &["--sheet", "images", "out.gif"]);
     check("out.webp", &["--ghost", "2"], &["--ghost", ".png"]);
     check("out.apng", &["--time", "1"], &["--time"]);
-    check("out.png", &["--fps", "25"], &["--fps", "moving pictures", ".webp"]);
+    check("out.png", &["--fps", "25"], &["--fps", "animations", ".webp"]);
     check("out.png", &["--turntable"], &["--turntable"]);
     check("-", &["--loop"], &["--loop"]);
     check("out.gif", &["--fps", "60"], &["at most 50", ".apng"]);
