@@ -165,11 +165,18 @@ fn bound(x: f64) -> String {
         return x.to_string();
     }
     let scale = libm::pow(10.0, 1.0 - libm::log10(x).floor());
-    let up = (x * scale - 1e-9).ceil() / scale;
-    match 1 - libm::log10(up).floor() as i32 {
-        decimals @ 0..=7 => format!("{up:.*}", decimals as usize),
-        -4..0 => up.to_string(),
-        _ => format!("{up:.1e}"),
+    // What has two digits already may be a little more once it is scaled.
+    let units = (x * scale - 1e-9).ceil();
+    let texts = [units, units + 1.0].map(|units| two_digits(units / scale));
+    texts.into_iter().find(|text| text.parse().is_ok_and(|said: f64| said >= x)).unwrap_or(x.to_string())
+}
+
+/// A number of two digits, in the shorter notation.
+fn two_digits(x: f64) -> String {
+    match 1 - libm::log10(x).floor() as i32 {
+        decimals @ 0..=7 => format!("{x:.*}", decimals as usize),
+        -4..0 => x.to_string(),
+        _ => format!("{x:.1e}"),
     }
 }
 
@@ -197,6 +204,18 @@ pub(super) fn print_failure(input: &Path, failure: &Failure) -> Result<(), Failu
 #[cfg(test)]
 mod tests {
     use super::bound;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_bound_that_is_said_is_no_smaller(digits in 1.0..10.0f64, exponent in -12..9i32, nudge in -2..3i64) {
+            let exact = (digits * 10.0).round() / 10.0 * 10f64.powi(exponent);
+            for x in [digits * 10f64.powi(exponent), f64::from_bits((exact.to_bits() as i64 + nudge) as u64)] {
+                let said: f64 = bound(x).parse().unwrap();
+                prop_assert!(x <= said && said <= x * 1.1001, "{x:e} is said to be {said:e}");
+            }
+        }
+    }
 
     #[test]
     fn bounds_are_two_digits_and_rounded_up() {
