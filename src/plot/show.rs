@@ -8,7 +8,7 @@ pub enum Show {
     Components,
     /// Angular speed, or speed along a path.
     Speed,
-    /// Angular acceleration, or acceleration along a path.
+    /// Angular acceleration, or the acceleration of a path.
     Acceleration,
     /// Angular jerk.
     Jerk,
@@ -54,7 +54,7 @@ impl Show {
         match self {
             Show::Components => "quaternion components over time, or x, y and z of a path",
             Show::Speed => "angular speed, or speed along a path",
-            Show::Acceleration => "angular acceleration, or acceleration along a path",
+            Show::Acceleration => "angular acceleration, or the acceleration of a path",
             Show::Jerk => "angular jerk: rate of change of acceleration",
             Show::Curvature => "curvature of a path",
             Show::Path => "a path in three orthographic views and an oblique one",

@@ -336,7 +336,7 @@ mod tests {
             ("# bezier degree=2 degree=2", 18, "one degree"),
             ("# euler frame=ned", 14, "the frame gltf, frd or flu, found 'ned'"),
             ("# euler frame=frd frame=frd", 18, "one frame"),
-            ("# quat-bezier wxyz xyzw", 19, "one order"),
+            ("# quat-bezier wxyz xyzw", 19, "one component order"),
             ("# euler wxyz", 8, "has no quaternions"),
         ] {
             let (place, message) = wrong(text);

@@ -188,7 +188,7 @@ fn what_does_not_go_together_is_said() {
     cubic(&["cubicspline", "--no-key-times"], "cannot be used with --no-key-times");
     cubic(&["cubicspline", "--no-bound"], "cannot be used with --no-bound");
     cubic(&["cubicspline", "--repeat", "2"], "cannot be used with --repeat");
-    cubic(&["cubicspline", "--quantize"], "cost up to 0.0033°");
+    cubic(&["cubicspline", "--quantize"], "costs up to 0.0033°");
     cubic(&["step", "--tolerance", "1"], "step cannot be used with --tolerance");
     cubic(&["step", "--repeat", "2"], "add --no-wrap");
     cubic(&["linear", "--max-step", "9"], "--max-step needs --tolerance");
