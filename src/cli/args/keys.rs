@@ -23,8 +23,8 @@ pub(crate) struct Keys {
     /// chain [default: tolerance × extent of the path]
     #[arg(long, value_name = "UNITS", allow_negative_numbers = true, value_parser = positive)]
     tolerance_distance: Option<f64>,
-    /// With --tolerance: max angle between neighboring keys; up to 18 keeps viewers that use
-    /// nlerp (Blender) within 0.01° [default: 18; for cubicspline 90]
+    /// With --tolerance: max angle between neighboring keys; up to 18 adds at most 0.01° in
+    /// viewers that use nlerp (Blender) [default: 18; for cubicspline 90]
     #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = step)]
     max_step: Option<f64>,
     /// With --tolerance: keep keyframes on the curve (takes about 1.4 times as many)

@@ -91,7 +91,7 @@ pub(super) fn ends() -> ValueParser {
         ("repeat", "the end key is repeated"),
         ("closed", "loop: the last key connects to the first"),
         ("periodic", "alias of closed"),
-        ("hold", "each end segment holds its first key, then jumps"),
+        ("hold", "each end segment holds its first key; the first then jumps"),
         ("chord", "end tangents are the mean velocity of the first and last segment"),
     ];
     named(Ends::from_name, values.to_vec())
