@@ -174,7 +174,7 @@ fn bound(x: f64) -> String {
 /// A number of two digits, in the shorter notation.
 fn two_digits(x: f64) -> String {
     match 1 - libm::log10(x).floor() as i32 {
-        decimals @ 0..=7 => format!("{x:.*}", decimals as usize),
+        decimals @ 0..=5 => format!("{x:.*}", decimals as usize),
         -4..0 => x.to_string(),
         _ => format!("{x:.1e}"),
     }
@@ -228,6 +228,7 @@ mod tests {
             (1.01, "1.1"),
             (12.3, "13"),
             (180.0, "180"),
+            (4.21e-6, "4.3e-6"),
             (1.23e-9, "1.3e-9"),
         ];
         for (x, text) in cases {
